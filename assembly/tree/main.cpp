@@ -2,8 +2,11 @@
 // one of some, and talks with it over standard input and output (exchange.hpp).
 #include <malloc.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
@@ -190,10 +193,16 @@ std::optional<std::string> answer_about_cells(lacon::Cells& cells, const std::st
 }  // namespace
 
 int main(int argc, char** argv) {
+  struct stat input;
+  if (argc != 3 || fstat(STDIN_FILENO, &input) != 0 || !S_ISSOCK(input.st_mode)) {
+    std::fputs("lacon_mumps is not for users: operators start it and talk with it over a socket. Run `lacon study.comm`\n",
+               stderr);
+    return 2;
+  }
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   setenv("LACON_THREADS", "1", 1);  // processes are what works at the same time here
   const lacon::Lender lender;
-  lacon::Cells cells(argc > 1 ? std::stoi(argv[1]) : 0, argc > 2 ? std::stoi(argv[2]) : 1, lender);
+  lacon::Cells cells(std::stoi(argv[1]), std::stoi(argv[2]), lender);
   Pieces pieces;
   std::cout << "ready" << std::endl;
   for (std::string line; std::getline(std::cin, line);) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <climits>
+#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -139,6 +140,25 @@ class QuasiStatic : public InstantSolver {
   std::vector<double> rest_;  ///< displacements at the instant before the last
 };
 
+/// STEP_7: instants behind the last one that ARCHIVAGE or OBSERVATION asks for. Those before the first one a computation that
+/// this one goes on with may have had.
+void tell_instants_behind(const Keywords& keywords, const Base& base, double last) {
+  for (const char* name : {"ARCHIVAGE", "OBSERVATION"})
+    for (const Keywords& occurrence : keywords.factors(name)) {
+      const char* keyword = occurrence.has("INST") ? "INST" : "LIST_INST";
+      if (!occurrence.has(keyword)) continue;
+      std::vector<double> instants =
+          occurrence.has("INST") ? occurrence.reals(keyword) : base.list_of_reals(occurrence.concept_id(keyword));
+      const double near = occurrence.real("PRECISION") * (occurrence.text("CRITERE") == "RELATIF" ? std::abs(last) : 1.0);
+      std::erase_if(instants, [&](double instant) { return instant <= last + near; });
+      if (!instants.empty())
+        inform("STEP_7", {{"keyword", occurrence.path(keyword)},
+                          {"count", std::to_string(instants.size())},
+                          {"instant", fmt::format("{:.9g}", std::ranges::min(instants))},
+                          {"last", fmt::format("{:.9g}", last)}});
+    }
+}
+
 /// Throws what loads without a value at the first instant or the last one are refused for.
 void check_loads(const StaticProblem& problem, const StaticState& state, const TimeSteps& steps) {
   for (const double instant : {steps.values[std::min<std::size_t>(1, steps.values.size() - 1)], steps.values.back()}) {
@@ -162,6 +182,7 @@ void stat_non_line(const Order& order, const Base& base) {
   const std::optional<double> begins = record ? origin_in(*record) : origin ? std::optional(origin->instant) : std::nullopt;
   const TimeSteps steps = steps_of(keywords.factor("INCREMENT"), base, begins);
   tell_missing_instants(keywords, base, steps.values);
+  tell_instants_behind(keywords, base, steps.values.back());
   QuasiStatic solver(problem, newton_options(keywords, steps, problem), engine_of(keywords.factor("SOLVEUR"), base, problem));
   const Present present = solver.present(problem);
   Observations observations(keywords, base, problem.mesh, observed_fields_of(present));

@@ -77,6 +77,12 @@ class Program(TwoSquares):
         run = subprocess.run([BIN / "lacon", "--version"], capture_output=True, text=True, timeout=10, check=True)
         self.assertEqual(run.stdout, f"lacon {own.stdout}")
 
+    def test_programs_of_operators_say_that_they_are_not_for_users(self):
+        for name, *arguments in (("lacon_mumps",), ("lacon_mumps", "--help"), ("lacon_mumps", "0", "1"), ("lacon_petsc",)):
+            run = subprocess.run([BIN / name, *arguments], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=10, check=False)
+            self.assertEqual((run.returncode, run.stdout), (2, ""))
+            self.assertIn("operators", run.stderr)
+
     def test_verbose_says_phases_and_counts(self):
         quiet = self.solve()
         self.assertEqual(quiet.stderr, "")

@@ -350,9 +350,21 @@ class StatNonLine(TwoSquares):
             self.assertEqual(sorted(index["fields"]), ["CONT_ELEM", "CONT_NOEU", "DEPL"])
             np.testing.assert_array_equal(index["fields/DEPL/order"], [0, 1, 2])
 
+    def test_instants_behind_the_last_one_are_told(self):
+        self.write_list("list_of_reals_8", [0.0, 0.5, 1.0])
+        self.write_list("list_of_reals_7", [-1.0, 0.5, 1.0 + 1e-9, 3.0, 2.0])
+        kind = {"PRECISION": 1e-6, "CRITERE": "RELATIF"}
+        for archived, words in (({"INST": [0.5, 1.0], **kind}, []), ({"INST": [0.5, 3.0], **kind}, ["ARCHIVAGE/INST: 1 of", ", 1, from 3 on"]),
+                                ({"LIST_INST": concept("list_of_reals_7"), **kind}, ["ARCHIVAGE/LIST_INST: 2 of", "from 2 on"])):
+            run = self.solve(ARCHIVAGE=archived)
+            self.assertEqual(run.status, 0, run.stderr)
+            self.assertEqual([m["severity"] for m in run.messages if m["id"] == "STEP_7"], ["I"] * bool(words))
+            for word in words:
+                self.assertIn(word, next(m["text"] for m in run.messages if m["id"] == "STEP_7"))
+
     def test_instants_and_fields_that_archivage_names_in_vain_are_told(self):
         self.write_list("list_of_reals_8", [0.0, 0.5, 1.0])
-        for archived, alarms, words in (({"INST": [0.5], "PRECISION": 1e-6, "CRITERE": "RELATIF"}, [], ""), ({"INST": [0.5, 0.7, 3.0], "PRECISION": 1e-6, "CRITERE": "RELATIF"}, ["EVOLUTION_56"], "1 of these instants, the first is 0.7"),
+        for archived, alarms, words in (({"INST": [0.5], "PRECISION": 1e-6, "CRITERE": "RELATIF"}, [], ""), ({"INST": [0.5, 0.7, 3.0], "PRECISION": 1e-6, "CRITERE": "RELATIF"}, ["EVOLUTION_56", "STEP_7"], "1 of these instants, the first is 0.7"),
                                         ({"CHAM_EXCLU": ["VARI_ELGA"]}, [], ""), ({"CHAM_EXCLU": ["DEPLL"]}, ["EVOLUTION_58"], "no field 'DEPLL'"),
                                         ({"DETR_NUME_SUIV": "OUI"}, ["EVOLUTION_62"], "none is removed")):
             run = self.solve(ARCHIVAGE=archived)
