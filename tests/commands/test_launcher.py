@@ -168,9 +168,9 @@ class Units(LauncherTest):
 
     def test_an_output_that_cannot_be_written(self):
         os.mkfifo(self.work / "pipe")
-        for path in ("nowhere/out.med", "mesh.med/out.med", ".", "pipe"):
+        for path, identifier in (("nowhere/out.med", "COMMAND_8"), ("mesh.med/out.med", "COMMAND_8"), (".", "COMMAND_21"), ("pipe", "COMMAND_21")):
             run = self.run_study(STUDY + "IMPR_RESU(UNITE=80, RESU=_F(RESULTAT=R))\n", "--unit", f"80={path}")
-            self.refused(run, "COMMAND_8", "IMPR_RESU/UNITE, study.comm:12")
+            self.refused(run, identifier, "IMPR_RESU/UNITE, study.comm:12")
 
     def test_results_never_replace_data(self):
         kept = (self.work / "mesh.med").read_bytes()

@@ -121,6 +121,24 @@ class Surroundings(LauncherTest):
             self.assertIn(f"<F> <STUDY_41> --out {name} would replace a file of this study", run.err)
         self.assertEqual({path: path.read_bytes() for path in self.work.rglob("*") if path.is_file()}, before)
 
+    def test_no_picture_and_no_pairing_goes_into_a_base(self):
+        """Of `lacon plot --out` and `lacon inspect --out`; nor over a file that the study reads."""
+        self.write("pairing.med", "a mesh")
+        self.write("study.comm", STUDY + "FIN()\n")
+        self.ok(self.launch("study.comm", "--unit", "20=pairing.med"))
+        before = {path: path.read_bytes() for path in self.work.rglob("*") if path.is_file()}
+        for tool, out in (("plot", "study.base/picture"), ("inspect", "study.base"), ("inspect", "study.base/kept/new"), ("inspect", ".")):
+            run = self.launch(tool, "study.base", "--out", out)
+            self.assertEqual(run.status, 2, run.err)
+            self.assertIn(f"<F> <STUDY_41> --out {out}", run.err)
+        self.assertEqual({path: path.read_bytes() for path in self.work.rglob("*") if path.is_file()}, before)
+
+    def test_lacon_bin_is_a_folder_of_programs(self):
+        self.write("study.comm", STUDY + "FIN()\n")
+        for said, what in (("nowhere", "no folder"), ("mesh.med", "no folder"), (".", "no program of Lacon")):
+            run = self.refused(self.launch("study.comm", "--unit", "20=mesh.med", environment={"LACON_BIN": said}), "COMMAND_22", f"'{said}'", what)
+            self.assertIn("build/release/bin", run.err)
+
     def test_more_processes_than_any_machine_has(self):
         """They were started one by one, until nothing else ran."""
         self.write("study.comm", STUDY + "FIN()\n")
@@ -267,10 +285,10 @@ FIN()
         """Pipes and folders are refused as data and as results, before a result replaces them."""
         os.mkfifo(self.work / "pipe")
         (self.work / "folder").mkdir()
-        for path in ("pipe", "folder", "/dev/null"):
+        for path, what in (("pipe", "a pipe"), ("folder", "a folder"), ("/dev/null", "a device")):
             self.write("study.comm", STUDY + PRINT)
-            self.refused(self.launch("study.comm", "--unit", f"20={path}"), "COMMAND_5", path)
-            self.refused(self.launch("study.comm", "--unit", "20=mesh.med", "--unit", f"80={path}"), "COMMAND_8", path)
+            self.refused(self.launch("study.comm", "--unit", f"20={path}"), "COMMAND_21", path, what, "LIRE_MAILLAGE/UNITE")
+            self.refused(self.launch("study.comm", "--unit", "20=mesh.med", "--unit", f"80={path}"), "COMMAND_21", path, what)
         self.assertTrue(pathlib.Path("/dev/null").is_char_device() and (self.work / "pipe").is_fifo())
 
     def test_a_file_that_opens_and_cannot_be_read(self):

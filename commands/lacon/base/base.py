@@ -346,6 +346,11 @@ class ReadBase(Base):
         holder = self._holder()
         return holder if holder and _is_alive(holder["process"]) else None
 
+    def needs(self, path):
+        """Whether a file is one of this folder, or one that its study reads: no tool may replace it."""
+        path = os.path.realpath(path)
+        return pathlib.Path(path).is_relative_to(os.path.realpath(self.folder)) or path in self.registry.get("sources", ())
+
     def labels(self, kind):
         """label -> id, of the concepts of a type that are there, results in progress among them; plain variables first, then elements of lists."""
         labels = {**self.registry["labels"], **self.unfinished.labels()}

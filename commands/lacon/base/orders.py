@@ -17,7 +17,7 @@ from ..core.catalog import part
 from ..core.concepts import to_json
 from ..core.late import subprocess
 from ..core.messages import AsterError, ConvergenceError, InternalError, Message, SolutionError, fail, message
-from ..core.plugins import operator_folder
+from ..core.plugins import operator, operator_folder
 from . import expressions
 from .processor import available_cores
 
@@ -60,7 +60,7 @@ def order(command, study, keywords, where, result=None, units=None, written=()):
 
 def run(program, made, study, checks=False):
     """Start the operator on the order, or with `checks` on all of it but what takes long, and wait for it. @return its Outcome. @throws InternalError where it does not exist"""
-    executable = operator_folder() / program
+    executable = operator(program)
     if not os.access(executable, os.X_OK):
         raise InternalError([message("INTERNAL_2", made["source"], program=program, folder=operator_folder())])
     stack.make_room(made["source"])

@@ -7,6 +7,7 @@ import shutil
 import sys
 
 from . import catalog
+from .catalog import part
 from .messages import fail
 
 
@@ -24,6 +25,15 @@ def operator_folder():
     """Where the operators' executables are: LACON_BIN, or beside the launcher."""
     said = os.environ.get("LACON_BIN")
     return pathlib.Path(said) if said else _beside()
+
+
+def operator(program):
+    """Its executable. @throws AsterError COMMAND_22 where LACON_BIN is not what it has to be"""
+    folder = operator_folder()
+    if os.environ.get("LACON_BIN") and not any((folder / name).is_file() for name in (program, "affe_modele", "lire_maillage")):
+        what = part("folder_without_programs") if folder.is_dir() else part("no_folder_at_all")
+        fail("COMMAND_22", folder=folder, what=what)
+    return folder / program
 
 
 def plugin_folders():

@@ -1,6 +1,5 @@
 """A base that is looked at: `lacon.open("study.base")`."""
 
-import os
 import pathlib
 
 from ..base.base import look_into, once
@@ -33,8 +32,7 @@ class Base:
 
     def needs(self, path):
         """Whether a file is one of this folder, or one that its study reads: no tool may replace it."""
-        path = os.path.realpath(path)
-        return pathlib.Path(path).is_relative_to(os.path.realpath(self.folder)) or path in self._registered().registry.get("sources", ())
+        return self._registered().needs(path)
 
     @property
     def meshes(self):

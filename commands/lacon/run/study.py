@@ -2,18 +2,28 @@
 
 import os
 import pathlib
+import stat
 import sys
 
 from ..base import orders
 from ..base.base import Base
 from ..base.names import Names
 from ..core import current, streams
+from ..core.catalog import part
 from ..core.concepts import Concept
 from ..core.files import is_readable, write_whole
 from ..core.messages import AsterError, Message, fail, message, show
 from ..objects.kinds import kinds
 from . import execution, unused_contacts
 from .timings import Timings
+
+
+def _refuse_special(number, path, where):
+    """A unit is a file on a disk: results are written whole by renaming, which would replace a device as /dev/null, and data are read more than once."""
+    if os.path.exists(path) and not os.path.isfile(path):
+        mode = os.stat(path).st_mode
+        what = "unit_folder" if stat.S_ISDIR(mode) else "unit_pipe" if stat.S_ISFIFO(mode) else "unit_device"
+        fail("COMMAND_21", where, unit=number, file=path, what=part(what))
 
 
 class Study:
@@ -182,6 +192,7 @@ class Study:
         path = self.written_units.get(number) or self.units.get(number)
         if path is None:
             fail("COMMAND_4", where, unit=number)
+        _refuse_special(number, path, where)
         if not os.path.isfile(path) or not is_readable(path):
             fail("COMMAND_5", where, unit=number, file=path)
         return os.path.abspath(path)
@@ -198,9 +209,8 @@ class Study:
         if os.path.islink(path) and not staged:  # the link stays, and the file that it means is written
             path = os.path.realpath(path)
         folder = os.path.dirname(path)
-        # written whole by renaming, which would replace a device such as /dev/null
-        is_other = os.path.exists(path) and not os.path.isfile(path)
-        if not os.path.isdir(folder) or not (staged or os.access(folder, os.W_OK)) or is_other:
+        _refuse_special(number, path, where)
+        if not os.path.isdir(folder) or not (staged or os.access(folder, os.W_OK)):
             fail("COMMAND_8", where, unit=number, file=path)
         if os.path.realpath(path) in self.sources:
             fail("COMMAND_12", where, unit=number, file=path)
@@ -220,7 +230,8 @@ class Study:
             folder = there = os.path.dirname(os.path.abspath(path))
             while not os.path.lexists(there):
                 there = os.path.dirname(there)
-            if os.path.isdir(path) or not (os.path.isdir(there) and (self.stage or os.access(there, os.W_OK | os.X_OK))):
+            _refuse_special(number, path, where)
+            if not (os.path.isdir(there) and (self.stage or os.access(there, os.W_OK | os.X_OK))):
                 fail("COMMAND_8", where, unit=number, file=path)
             if there != folder and number not in self.missing_told:
                 self.missing_told.add(number)

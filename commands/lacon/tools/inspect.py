@@ -19,6 +19,7 @@ from ..core.concepts import to_json
 from ..core.messages import AsterError, fail
 from ..objects.kinds import kinds
 
+_files = (("VTU", "pairing.vtu"), ("MED", "pairing.med"))
 _layer = re.compile(r"pairing_(pairs|skins|points|rejected)(_\d+\.vtu|\.pvd)")
 
 
@@ -44,8 +45,10 @@ def run(arguments):
         except ValueError:
             asked.wrong("give_instant", option=f"--instant {options.instant}")
     shelf = ReadBase(options.base, "lacon inspect", kinds)
-    chosen = choose(shelf, options.result)
     folder = pathlib.Path(options.out or shelf.folder.with_name(shelf.folder.stem + "_pairing").name)
+    if any(map(shelf.needs, (folder, *(folder / name for _, name in _files)))):
+        fail("STUDY_41", "lacon inspect", option="--out", file=folder)
+    chosen = choose(shelf, options.result)
     if chosen.type == "contact" and options.instant is not None:
         fail("INSPECT_3", "lacon inspect --instant", label=chosen.label)
     return write(shelf, resu(chosen, "last" if options.instant is None else options.instant), folder)
@@ -92,7 +95,7 @@ def write(shelf, occurrence, folder):
     except OSError as error:
         fail("STUDY_3", "lacon inspect --out", folder=folder, reason=error.strerror)
     earlier = {path: path.stat().st_ino for path in folder.iterdir() if _layer.fullmatch(path.name)}
-    for number, (form, name) in enumerate((("VTU", "pairing.vtu"), ("MED", "pairing.med"))):
+    for number, (form, name) in enumerate(_files):
         keywords, problems, _ = checker.complete("IMPR_RESU", catalog.command("IMPR_RESU"),
                                                  {"FORMAT": form, "UNITE": 80, "RESU": occurrence}, "lacon inspect")
         if problems:
@@ -102,7 +105,7 @@ def write(shelf, occurrence, folder):
         with tempfile.TemporaryDirectory(prefix="lacon_inspect_") as scratch:
             order = pathlib.Path(scratch) / "order.json"
             order.write_text(json.dumps(made, ensure_ascii=False), encoding="utf-8")
-            done = subprocess.run([plugins.operator_folder() / "impr_resu", order], stdout=subprocess.PIPE, stdin=subprocess.DEVNULL,
+            done = subprocess.run([plugins.operator("impr_resu"), order], stdout=subprocess.PIPE, stdin=subprocess.DEVNULL,
                                   stderr=subprocess.PIPE if number else None, text=True, check=False)
         if done.returncode:
             sys.stderr.write(done.stderr or "")

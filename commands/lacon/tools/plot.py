@@ -13,6 +13,7 @@ from ..reader.base import open_base
 from ..reader.result import Result
 
 formats = ("png", "svg")
+pictures = ("mesh", "pressure", "convergence")
 
 
 def parser():
@@ -39,15 +40,18 @@ def run(arguments):
     options = asked.parse_args(arguments)
     base = open_base(options.base)
     stem = pathlib.Path(options.out or base.folder.resolve().stem)
+    places = {(name, suffix): stem.with_name(f"{stem.name}_{name}.{suffix}") for name in pictures for suffix in options.format or formats}
+    if (taken := next(filter(base.needs, places.values()), None)) is not None:
+        fail("STUDY_41", "lacon plot", option="--out", file=taken)
     result = base.only_result(options.result)
     if options.iteration is not None:
         result = result.failed_step or result
         if isinstance(result, Result):
             fail("PLOT_2", "lacon plot --iteration", label=result.label)
     at = {"instant": options.instant, "order": options.iteration}
-    pictures = {"mesh": lambda: result.plot(**at, scale=options.scale, field=checked(result, at, options), component=options.component),
-                "pressure": lambda: result.plot_pressure(**at), "convergence": result.plot_convergence}
-    for name, draw in pictures.items():
+    drawing = (lambda: result.plot(**at, scale=options.scale, field=checked(result, at, options), component=options.component),
+               lambda: result.plot_pressure(**at), result.plot_convergence)
+    for name, draw in zip(pictures, drawing):
         try:
             figure = draw()
         except AsterError as error:
@@ -56,7 +60,7 @@ def run(arguments):
             show(error.messages[0]._replace(severity="I"))  # a result without contact, or without journal, has the other pictures
             continue
         for suffix in options.format or formats:
-            path = stem.with_name(f"{stem.name}_{name}.{suffix}")
+            path = places[name, suffix]
             try:
                 stem.parent.mkdir(parents=True, exist_ok=True)
                 figure.savefig(path, dpi=options.dpi)
