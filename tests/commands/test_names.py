@@ -1,13 +1,18 @@
 """Concepts are labelled by the variable they are assigned to; POURSUITE finds names again or says why not."""
 
 import cProfile
+import json
+import random
 import sys
+import types
 import unittest
 
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import STUDY, LauncherTest  # noqa: E402
 
-from lacon.base.names import concepts_of  # noqa: E402
+from lacon.base import registry  # noqa: E402
+from lacon.base.names import Names, concepts_of  # noqa: E402
+from lacon.core.concepts import Concept  # noqa: E402
 
 MATERIAL = "DEFI_MATERIAU(ELAS=_F(E=1, NU=0))"
 
@@ -252,6 +257,78 @@ B = AFFE_MATERIAU(MAILLAGE=LIRE_MAILLAGE(), AFFE=_F(TOUT='OUI', MATER=L[1]))
         self.ok(self.resume(f"A = {MATERIAL}\nx = 1", "x = 2\nA = 3"))
         self.assertEqual(self.registry()["labels"], {})
         self.ok(self.launch(self.write("third.comm", "POURSUITE()\nassert (x, A) == (2, 3)\n").name, "--base", "study.base"))
+
+
+class ManyNames(unittest.TestCase):
+    """What a command costs does not grow with the square of how many there are."""
+
+    def study(self):
+        return Names({"DEBUT": print}), types.SimpleNamespace(registry=registry.empty())
+
+    def test_labels_of_what_is_new_are_those_of_all_names(self):
+        """Whatever a command file does between two commands; drawn by lot. The other study looks at all names each time."""
+        quickly = 0
+        for seed in range(200):
+            draw = random.Random(seed)
+            (quick, base), (whole, other) = self.study(), self.study()
+            for names, at in ((quick, base), (whole, other)):
+                if seed % 2:
+                    names.values["L"] = []  # which may come to hold concepts
+                if seed % 5 == 0:  # of an earlier run
+                    at.registry["labels"] = {"A0[1]": "mesh_1", "B1.x": "mesh_2", "L[0]": "mesh_3", "old": "mesh_4"}
+            for number in range(30):
+                identifier, label = f"material_{number}", draw.choice("ABCDEFGH") + str(number // 8)
+                made, same = Concept(None, identifier, label), Concept(None, identifier, label)
+                pending = draw.choice([(label, identifier), (f"L[{number}]", identifier), ("", identifier)])
+                for names, at in ((quick, base), (whole, other)):
+                    names._seen = names._seen if names is quick else None
+                    names.update_labels(at, pending)
+                self.assertEqual(base.registry, other.registry, seed)
+                kind = draw.randrange(11)
+                for names, item in ((quick, made), (whole, same)):
+                    values = names.values
+                    if kind < 5:
+                        values[label] = item
+                    elif kind == 5:
+                        values.setdefault("L", []).append(item)
+                    elif kind == 6:
+                        values["i"] = number
+                        values[label] = values["again"] = item
+                    elif kind == 7:
+                        values.pop(label, None)
+                        values["plain"] = [number]
+                    elif kind == 8:  # DETRUIRE
+                        for name in [n for n, v in values.items() if isinstance(v, Concept)][:1]:
+                            values.pop(name).destroyed = "here"
+                whole._seen = None
+                before = quick._seen
+                self.assertEqual(quick.update_labels(base), whole.update_labels(other), seed)
+                quickly += before is not None and quick._seen is before
+                self.assertEqual(base.registry, other.registry, seed)
+                self.assertEqual([getattr(v, "label", None) for v in quick.values.values()], [getattr(v, "label", None) for v in whole.values.values()])
+        self.assertGreater(quickly, 500)
+
+    def test_all_names_are_looked_at_once(self):
+        names, base = self.study()
+        looked = []
+        names._update_all_labels = lambda *arguments: looked.append(1) or Names._update_all_labels(names, *arguments)
+        for number in range(100):
+            names.update_labels(base)
+            names.update_labels(base, (f"F{number}", f"function_{number}"))
+            names.values[f"F{number}"] = Concept(None, f"function_{number}")
+            names.values["i"] = number
+        self.assertTrue(names.update_labels(base) is False and len(base.registry["labels"]) == 100)
+        self.assertEqual(len(looked), 1)
+
+    def test_the_text_of_a_registry_is_that_of_its_content(self):
+        """Of versions of concepts it is put together from what is known of each."""
+        content = {**registry.empty(), "made": {}}
+        for number in range(5):
+            content["made"].setdefault(f"mesh_{number // 2}", []).append({"key": str(number), "stat": [1, number], "alarms": [], "references": []})
+            self.assertTrue(registry.sealed(content).startswith(json.dumps(content)[:-1]))
+        content["made"]["mesh_0"][1] = dict(content["made"]["mesh_0"][1], key="another")
+        del content["made"]["mesh_1"]
+        self.assertTrue(registry.sealed(content).startswith(json.dumps(content)[:-1]))
 
 
 if __name__ == "__main__":

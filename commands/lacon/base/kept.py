@@ -150,7 +150,7 @@ class Kept:
         if not self.look or key is None:
             return None
         for identifier, versions in self._made.items():
-            if (type_of(identifier) == kind and identifier not in self._at and versions[0]["key"] == key
+            if (versions[0]["key"] == key and type_of(identifier) == kind and identifier not in self._at
                     and not (silent and versions[0]["alarms"]) and self._restore(identifier, 0)):
                 return identifier
         return None

@@ -184,6 +184,9 @@ class Names:
         self._known = set()  #: names of this run so far
         self._pending = None  #: label of a concept that was not assigned yet when it was entered
         self._lost = {}
+        self._seen = None  #: all names as they were when the labels were last brought up to date; None where more than names says what these are
+        self._named = set()  #: ids that these have
+        self._boxes = []  #: (name, value) of those that may come to hold concepts while their name stays
 
     def user(self):
         """name -> value of what the command files made"""
@@ -206,17 +209,61 @@ class Names:
 
         Labels of an earlier run stay until their variable is assigned again. @return true where the registry changed
         """
+        new = self._new_concepts(base)
+        if new is None:
+            return self._update_all_labels(base, pending)
+        labels, before = base.registry["labels"], self._pending
+        entered = {name: item.id for name, item in new.items()}
+        for name, item in new.items():
+            item.label = name
+        if pending and pending[0]:
+            entered[pending[0]] = pending[1]
+        self._pending = pending[0] if pending else None
+        changed = any(labels.get(label) != identifier for label, identifier in entered.items())
+        if before is not None and before not in entered:  # it was never assigned
+            changed |= labels.pop(before, None) is not None
+        labels.update(entered)
+        return changed
+
+    def _new_concepts(self, base):
+        """Thousands of functions or loads are made one after the other, and looking at all names at each of them would take its square.
+
+        @return name -> concept, where nothing else has come since the last time that concerns labels; otherwise None
+        """
+        if self._seen is None or self._pending in self._seen or any(True for box in self._boxes for _ in concepts_of(*box)):
+            return None
+        fresh = [(name, value) for name, value in list(self.values.items()) if self._seen.get(name, self) is not value]
+        labels, values = base.registry["labels"], base.registry["namespace"].get("values", {})
+        new = {}
+        for name, value in fresh:
+            is_concept = isinstance(value, Concept)
+            if isinstance(value, (list, tuple, dict)) or name.startswith("__") or name in values:
+                return None
+            if not is_concept and not isinstance(self._seen.get(name), (Concept, list, tuple, dict)):
+                continue  # plain before and now, as the variable of a loop
+            if not is_concept or name in self._seen or value.destroyed or value.id in self._named:
+                return None
+            if labels.get(name, value.id) != value.id:
+                return None
+            new[name] = value
+            self._named.add(value.id)
+        self._seen.update(fresh)
+        self._known.update(name for name, _ in fresh)
+        return new if len(self._seen) == len(self.values) else None
+
+    def _update_all_labels(self, base, pending):
         user = self.user()
         labels, containers, named = {}, {}, set()
-        for name, value in user.items():
-            if isinstance(value, Concept) or isinstance(value, (list, tuple, dict)):
-                found = [(label, c) for label, c in concepts_of(name, value) if not c.destroyed]
+        for name, value in user.items():  # twice a command: names that mean no more than one concept, of which there may be thousands, go quickly
+            alone = isinstance(value, Concept)
+            if alone or isinstance(value, (list, tuple, dict)):
+                found = [(label, c) for label, c in ([(name, value)] if alone else concepts_of(name, value)) if not c.destroyed]
                 for label, item in found:
                     labels[label] = item.id
                     if item.id not in named:  # of several variables the first one is its name
                         named.add(item.id)
                         item.label = label
-                if found and not isinstance(value, Concept):
+                if found and not alone:
                     try:
                         containers[name] = encode(value)
                     except (NotKept, RecursionError):
@@ -226,7 +273,7 @@ class Names:
         if pending and pending[0]:
             labels[pending[0]] = pending[1]
         registry = base.registry
-        old = {k: v for k, v in registry["labels"].items() if root(k) not in gone and k != self._pending}
+        old = {k: v for k, v in registry["labels"].items() if k not in gone and root(k) not in gone and k != self._pending}
         self._pending = pending[0] if pending else None
         # plain data stays as it was last saved: that is what is left of it when the run is killed
         values = {k: v for k, v in registry["namespace"].get("values", {}).items()
@@ -236,6 +283,8 @@ class Names:
         space = {"values": values, "lost": registry["namespace"].get("lost", {})}
         changed = new != registry["labels"] or space != registry["namespace"]
         registry["labels"], registry["namespace"] = new, space
+        self._seen, self._named = (None if old or containers else dict(self.values)), named
+        self._boxes = [(name, value) for name, value in user.items() if isinstance(value, (list, tuple, dict))]
         return changed
 
     def forget_data(self, base):
