@@ -114,7 +114,7 @@ std::vector<std::int32_t> orient_body_cells(Mesh& mesh) {
     const JacobianRange range = jacobian_range(row.type, nodes, mesh.coordinates);
     if (is_sound(range)) continue;
     const auto cell = static_cast<std::int32_t>(c);
-    if (!is_sound({-range.greatest, -range.least})) {
+    if (!is_sound({-range.greatest, -range.least, -range.central})) {
       const std::string groups = groups_with(mesh, cell);
       fail("LIRE_2", {{"cell", cell_name(cell)},
                       {"type", std::string(row.name)},

@@ -78,7 +78,7 @@ template <std::size_t d>
     x = Row{of[0], of[1], of[2], 0};
   };
   const double first = jacobian<d>(nodes.size(), gradients, read);
-  JacobianRange range{first, first};
+  JacobianRange range{first, first, first};
   if (n_points == 1) return range;
   Row places[max_nodes];
   for (std::size_t a = 0; a < nodes.size(); ++a) read(a, places[a]);
@@ -249,6 +249,8 @@ Quality quality_of(std::vector<CellQuality> cells) {
   return quality;
 }
 
-bool is_sound(const JacobianRange& range) { return range.greatest > 0 && range.least >= -flat_corner * range.greatest; }
+bool is_sound(const JacobianRange& range) {
+  return range.greatest > 0 && range.least >= -flat_corner * range.greatest && range.central > flat_corner * range.greatest;
+}
 
 }  // namespace lacon

@@ -15,10 +15,12 @@ namespace lacon {
 struct JacobianRange {
   double least;
   double greatest;
+  double central;
 };
 JacobianRange jacobian_range(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates);
 
-/// Positive everywhere, but for corners that are flat (zero to round-off), as those of a quadrangle drawn as a triangle.
+/// Positive everywhere, but for corners that are flat (zero to round-off), as those of a quadrangle drawn as a triangle. At the
+/// centre zero is none: that is a hexahedron whose one face is turned by 180 degrees, with all corners the right way round.
 bool is_sound(const JacobianRange& range);
 
 /// The determinant at the centre: its sign says on which side the cell's facets have their outside.

@@ -82,4 +82,19 @@ TEST(Checks, find_orphans_twins_and_flat_cells_as_brute_force_does) {
   }
 }
 
+// Its corners are the right way round, and in its middle the map is singular.
+TEST(Orientation, a_hexahedron_with_a_turned_face_is_refused) {
+  Mesh mesh = one_cell(CellType::HEXA8, CellType::QUAD4, 3);
+  const Nodes nodes(mesh.cells[0].begin(), mesh.cells[0].end());
+  EXPECT_EQ(error_of([&] { orient_body_cells(mesh); }).id, "");
+  for (const int by : {1, 2, 3}) {
+    for (std::size_t v = 0; v < 4; ++v) mesh.cells[0][4 + v] = nodes[4 + (v + static_cast<std::size_t>(by)) % 4];
+    if (by == 2) {
+      EXPECT_GT(jacobian_range(CellType::HEXA8, mesh.cells[0], mesh.coordinates).least, -1e-12);
+    }
+    const bool is_refused = error_of([&] { orient_body_cells(mesh); }).id == "LIRE_2";
+    EXPECT_EQ(is_refused, by == 2) << by;
+  }
+}
+
 }  // namespace
