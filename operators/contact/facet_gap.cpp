@@ -69,8 +69,7 @@ class PlacedCell {
     constexpr double edge = 1e-9, solved = 1e-12;
     const catalog::CellRow& row = catalog::cell(type_);
     const auto dimension = static_cast<std::size_t>(row.dimension);
-    std::vector<double> xi(dimension, row.family == Family::TRIA ? 1.0 / 3 : 0.0), slopes(shape_.size() * dimension);
-    slopes.resize(points_.size() / 3 * dimension);
+    std::vector<double> xi(dimension, row.family == Family::TRIA ? 1.0 / 3 : 0.0), slopes(points_.size() / 3 * dimension);
     double along = 0;
     for (int step = 0; step < most_steps; ++step) {
       const Vec3 off = at(xi) - place - along * direction;
@@ -112,14 +111,13 @@ const FacetGaps::Curves& FacetGaps::curves(std::int32_t number) {
   Curves& curves = found->second;
   if (!is_new) return curves;
   const ContactGeometry::Zone& zone = contact_.geometry().zones()[static_cast<std::size_t>(number)];
-  const auto add = [&](Surface skin, std::span<const std::int32_t> facet_of, const auto& cell_of, Skin& to) {
+  const auto add = [&](Surface skin, std::span<const std::int32_t> facet_of, const auto& cell_of, Arcs& to) {
     skin.coordinates = mesh_.coordinates;
     const std::vector<FacetArc> arcs = arcs_of_cells(skin, facet_of);
     for (std::size_t i = 0; i < arcs.size(); ++i) {
       if (!arcs[i].is_of_curve()) continue;
       const std::int32_t cell = cell_of(i);
-      to.arcs.emplace(cell, arcs[i]);
-      to.curvature = std::max(to.curvature, arcs[i].curvature());
+      to.emplace(cell, arcs[i]);
       const PlacedCell placed(mesh_, cell, mesh_.coordinates);
       const Rule& rule = measuring_rule(skin.types[i]);
       for (std::size_t p = 0; p < rule.weights.size() && !curves.are_left; ++p) {
@@ -150,8 +148,8 @@ std::map<std::size_t, double> FacetGaps::of_patches(std::int32_t zone) {
     const SlaveElement& element = definition_.slaves[static_cast<std::size_t>(cell.slave)];
     const auto patch = static_cast<std::size_t>(element.patch);
     if (geometry.zone_of(patch) != zone) continue;
-    const auto slave = curves.slave.arcs.find(element.cell), master = curves.master.arcs.find(cell.master);
-    if (slave == curves.slave.arcs.end() || master == curves.master.arcs.end()) continue;
+    const auto slave = curves.slave.find(element.cell), master = curves.master.find(cell.master);
+    if (slave == curves.slave.end() || master == curves.master.end()) continue;
     const PlacedCell slave_at_rest(mesh_, element.cell, mesh_.coordinates),
         slave_now(mesh_, element.cell, geometry.coordinates()), master_at_rest(mesh_, cell.master, mesh_.coordinates),
         master_now(mesh_, cell.master, geometry.coordinates());
@@ -192,9 +190,8 @@ std::optional<FacetGap> FacetGaps::of(std::int32_t zone, const Patchwise& patche
   std::vector<double> curvatures;
   for (const ContactGeometry::Cell& cell : geometry.cells()) {
     const SlaveElement& element = definition_.slaves[static_cast<std::size_t>(cell.slave)];
-    const auto slave = curves.slave.arcs.find(element.cell), master = curves.master.arcs.find(cell.master);
-    if (!near.contains(static_cast<std::size_t>(element.patch)) || slave == curves.slave.arcs.end() ||
-        master == curves.master.arcs.end())
+    const auto slave = curves.slave.find(element.cell), master = curves.master.find(cell.master);
+    if (!near.contains(static_cast<std::size_t>(element.patch)) || slave == curves.slave.end() || master == curves.master.end())
       continue;
     curvatures.push_back(std::max(slave->second.curvature(), master->second.curvature()));
     slave_nodes.insert(mesh_.cells[element.cell].begin(), mesh_.cells[element.cell].end());

@@ -42,12 +42,9 @@ class FacetGaps {
   std::optional<AlternatingPressures> few_press(std::int32_t zone, const Patchwise& patches);
 
  private:
-  struct Skin {
-    std::map<std::int32_t, FacetArc> arcs;  ///< by cells of the mesh, without corners of bodies
-    double curvature = 0;                   ///< the largest
-  };
+  using Arcs = std::map<std::int32_t, FacetArc>;  ///< by cells of the mesh, without corners of bodies
   struct Curves {
-    Skin slave, master;
+    Arcs slave, master;
     bool are_left = false;  ///< by facets, anywhere
   };
   const Curves& curves(std::int32_t zone);
