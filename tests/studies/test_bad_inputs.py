@@ -161,11 +161,11 @@ class BadInputs(StudyTest):
         self.assertEqual(self.run_text(GOOD).status, 0)
         solve = ("POURSUITE()\nRESULT = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER, EXCIT=[_F(CHARGE=c) for c in (HELD, PUSH)], CONTACT=CONTACT, "
                  "INCREMENT=_F(LIST_INST=TIMES))\n{}IMPR_RESU(FORMAT='MED', UNITE=80, RESU=_F(RESULTAT=RESULT))\nFIN()\n")
-        for place in ("text.med/out.med", "."):
+        for place, identifier in (("text.med/out.med", "COMMAND_8"), (".", "COMMAND_21")):
             self.units[80] = self.folder / place
             run = self.run_text(solve.format(""))
             self.assertEqual(run.status, 2, run.stderr)
-            self.assertIn("<F> <COMMAND_8>", run.stderr)
+            self.assertIn(f"<F> <{identifier}>", run.stderr)
             self.assertNotIn("Converged", run.stdout)
         self.units[80] = self.folder / "later/out.med"
         run = self.run_text(solve.format(f"import os; os.mkdir({str(self.folder / 'later')!r})\n"))

@@ -230,7 +230,8 @@ class Study:
             folder = there = os.path.dirname(os.path.abspath(path))
             while not os.path.lexists(there):
                 there = os.path.dirname(there)
-            _refuse_special(number, path, where)
+            if os.path.isdir(path):  # a device may be a unit that nothing uses
+                _refuse_special(number, path, where)
             if not (os.path.isdir(there) and (self.stage or os.access(there, os.W_OK | os.X_OK))):
                 fail("COMMAND_8", where, unit=number, file=path)
             if there != folder and number not in self.missing_told:
