@@ -68,7 +68,9 @@ inline PlasticStep radial_return(double q, double p, double three_mu, const Hard
     // of the piece's line, which may start behind p
     const double line = stress + slope * std::min(0.0, p - hardening.strain(piece));
     const double dp = (q - line) / (three_mu + slope);
-    if (piece + 1 == hardening.size || p + dp <= hardening.strain(piece + 1)) return {dp, slope};
+    if (piece + 1 < hardening.size && p + dp > hardening.strain(piece + 1)) continue;
+    if (!(line + slope * dp > 0)) return {.error = LACON_BAD_PARAMETER};  // softened to nothing
+    return {dp, slope};
   }
 }
 

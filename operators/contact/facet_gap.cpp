@@ -16,7 +16,7 @@ namespace {
 
 constexpr double negligible = 1e-5;    // of the radius
 constexpr double explained = 1.5;      // largest overlap that facets make, over what they leave of the curves
-constexpr double overlap_told = 1e-3;  // of h: average overlap that is worth an alarm where facets make it
+constexpr double overlap_told = 1e-3;  // of h: what facets make that is worth an alarm
 constexpr std::size_t fewest = 8;      // patches of a contact of which few press
 constexpr double few = 0.6;            // of them
 
@@ -45,6 +45,16 @@ double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
+}
+
+/// Call use(reference point, weight) for some points of a skin cell.
+template <class Use>
+void for_each_point(CellType type, const Use& use) {
+  const Family family = catalog::cell(type).family;
+  const Rule& rule = integration_rule(family, family == Family::SEG ? 4 : family == Family::TRIA ? 6 : 9);
+  const auto dimension = static_cast<std::size_t>(rule.dimension);
+  for (std::size_t p = 0; p < rule.weights.size(); ++p)
+    use(std::span(rule.points).subspan(p * dimension, dimension), rule.weights[p]);
 }
 
 /// A cell of a skin and its nodes at one geometry.
@@ -119,12 +129,10 @@ const FacetGaps::Curves& FacetGaps::curves(std::int32_t number) {
       const std::int32_t cell = cell_of(i);
       to.emplace(cell, arcs[i]);
       const PlacedCell placed(mesh_, cell, mesh_.coordinates);
-      const Rule& rule = measuring_rule(skin.types[i]);
-      for (std::size_t p = 0; p < rule.weights.size() && !curves.are_left; ++p) {
-        const auto xi = std::span(rule.points)
-                            .subspan(p * static_cast<std::size_t>(rule.dimension), static_cast<std::size_t>(rule.dimension));
-        curves.are_left = std::abs(arcs[i].missing(placed.at(xi))) * arcs[i].curvature() > negligible;
-      }
+      const double extent = cell_extent(mesh_, cell), size = skin.dimension == 2 ? extent : std::sqrt(extent);
+      for_each_point(skin.types[i], [&](std::span<const double> xi, double) {
+        if (std::abs(arcs[i].missing(placed.at(xi))) > overlap_told * size) curves.left_by.insert(cell);
+      });
     }
   };
   std::vector<std::int32_t> patches, cells(zone.masters.size());
@@ -138,11 +146,13 @@ const FacetGaps::Curves& FacetGaps::curves(std::int32_t number) {
   return curves;
 }
 
-std::map<std::size_t, double> FacetGaps::of_patches(std::int32_t zone) {
+const std::map<std::size_t, double>& FacetGaps::of_patches(std::int32_t zone) {
   const ContactGeometry& geometry = contact_.geometry();
   const Curves& curves = this->curves(zone);
-  std::map<std::size_t, double> of_patch;
-  if (!curves.are_left) return of_patch;
+  const auto [found, is_new] = of_patches_.try_emplace(zone);
+  std::map<std::size_t, double>& of_patch = found->second;
+  if (!is_new) return of_patch;
+  if (curves.left_by.empty()) return of_patch;
   std::map<std::size_t, double> weights;
   for (const ContactGeometry::Cell& cell : geometry.cells()) {
     const SlaveElement& element = definition_.slaves[static_cast<std::size_t>(cell.slave)];
@@ -150,29 +160,29 @@ std::map<std::size_t, double> FacetGaps::of_patches(std::int32_t zone) {
     if (geometry.zone_of(patch) != zone) continue;
     const auto slave = curves.slave.find(element.cell), master = curves.master.find(cell.master);
     if (slave == curves.slave.end() || master == curves.master.end()) continue;
+    of_patch.try_emplace(patch, 0.0);
+    if (!curves.left_by.contains(element.cell) && !curves.left_by.contains(cell.master)) continue;
     const PlacedCell slave_at_rest(mesh_, element.cell, mesh_.coordinates),
         slave_now(mesh_, element.cell, geometry.coordinates()), master_at_rest(mesh_, cell.master, mesh_.coordinates),
         master_now(mesh_, cell.master, geometry.coordinates());
-    const Rule& rule = measuring_rule(mesh_.types[element.cell]);
-    for (std::size_t p = 0; p < rule.weights.size(); ++p) {
-      const auto xi = std::span(rule.points)
-                          .subspan(p * static_cast<std::size_t>(rule.dimension), static_cast<std::size_t>(rule.dimension));
+    for_each_point(mesh_.types[element.cell], [&](std::span<const double> xi, double of_rule) {
       const Vec3 normal = slave_now.normal(xi);
       const auto image = master_now.met_by(slave_now.at(xi), normal / norm(normal));
-      if (!image) continue;
-      const double weight = rule.weights[p] * norm(normal);
+      if (!image) return;
+      const double weight = of_rule * norm(normal);
       weights[patch] += weight;
       of_patch[patch] +=
           weight * (slave->second.missing(slave_at_rest.at(xi)) + master->second.missing(master_at_rest.at(*image)));
-    }
+    });
   }
-  for (auto& [patch, gap] : of_patch) gap /= weights[patch];
+  for (auto& [patch, gap] : of_patch)
+    if (const auto weight = weights.find(patch); weight != weights.end()) gap /= weight->second;
   return of_patch;
 }
 
 std::optional<FacetGap> FacetGaps::of(std::int32_t zone, const Patchwise& patches, std::span<const double> displacement) {
   const ContactGeometry& geometry = contact_.geometry();
-  const std::map<std::size_t, double> gaps = of_patches(zone);
+  const std::map<std::size_t, double>& gaps = of_patches(zone);
   const Curves& curves = this->curves(zone);
   std::set<std::size_t> near;
   double sum = 0, area = 0;
@@ -208,22 +218,23 @@ std::optional<FacetGap> FacetGaps::of(std::int32_t zone, const Patchwise& patche
 
 std::optional<FacetOverlap> FacetGaps::overlap(std::int32_t zone) {
   const ContactGeometry& geometry = contact_.geometry();
-  const std::map<std::size_t, double> gaps = of_patches(zone);
+  const std::map<std::size_t, double>& gaps = of_patches(zone);
   std::optional<FacetOverlap> worst;
-  for (std::size_t patch = 0; patch < geometry.n_patches(); ++patch) {
+  double by_facets = 0, whole = 0;
+  for (const auto& [patch, left] : gaps) {
     const double depth = -geometry.gap(patch) / contact_.patch_size(patch);
-    if (geometry.zone_of(patch) != zone || !contact_.is_covered(patch) || depth < overlap_told) continue;
-    const auto left = gaps.find(patch);
-    if (left == gaps.end()) continue;
-    if (geometry.gap(patch) < explained * left->second) return std::nullopt;
+    if (!contact_.is_covered(patch) || depth < overlap_told) continue;
+    whole += geometry.whole(patch);
+    if (geometry.gap(patch) < explained * left) continue;
+    by_facets += geometry.whole(patch);
     if (!worst || depth > worst->depth) worst = FacetOverlap{patch, depth};
   }
-  return worst;
+  return 2 * by_facets >= whole ? worst : std::nullopt;
 }
 
 std::optional<AlternatingPressures> FacetGaps::few_press(std::int32_t zone, const Patchwise& patches) {
   const ContactGeometry& geometry = contact_.geometry();
-  const std::map<std::size_t, double> gaps = of_patches(zone);
+  const std::map<std::size_t, double>& gaps = of_patches(zone);
   double nearest = -std::numeric_limits<double>::infinity(),
          largest = 0;  // of those that press: the largest gap between curves
   AlternatingPressures found{0, 0, AlternatingBy::few_patches};

@@ -13,14 +13,13 @@
 namespace lacon {
 namespace {
 
-constexpr double pressure_that_counts = 0.1;  // of a fit: what facets make it wrong by
-constexpr double most_times = 3;              // beyond, what is right is a small difference of what is known
-constexpr double share_that_counts = 1e-3;    // of the largest strain of a zone: pressures below are none to speak of
-constexpr double share_of_round_off = 1e-3;   // of the largest pressure of a zone, at the instant that strains it most
-constexpr double gap_of_closed = 1e-5;        // of h: below, the average gap of a patch in contact is its round-off
-constexpr double inside_at_rest = 0.005;      // of h: points inside from the beginning, where nothing ever presses
-constexpr double come_in = 5e-4;              // of h: points that have come inside, where nothing ever presses
-constexpr double missed = 0.04;               // of h: a strain that the pressure would make that coarse patches do not feel
+constexpr double gap_that_counts = 0.15;     // of what skins give way by: pressures of a fit are wrong by as much, or more
+constexpr double share_that_counts = 1e-3;   // of the largest strain of a zone: pressures below are none to speak of
+constexpr double share_of_round_off = 1e-3;  // of the largest pressure of a zone, at the instant that strains it most
+constexpr double gap_of_closed = 1e-5;       // of h: below, the average gap of a patch in contact is its round-off
+constexpr double inside_at_rest = 0.005;     // of h: points inside from the beginning, where nothing ever presses
+constexpr double come_in = 5e-4;             // of h: points that have come inside, where nothing ever presses
+constexpr double missed = 0.04;              // of h: a strain that the pressure would make that coarse patches do not feel
 
 }  // namespace
 
@@ -152,6 +151,7 @@ void ContactNotices::accept(const SolvedInstant& solved) {
                             {"instant", fmt::format("{:.9g}", solved.instant)},
                             {"cell", first_cell(overlap.deepest)},
                             {"gap", fmt::format("{:.6g}", overlap.gap)}});
+  facet_gaps_->renew();
   tell_what_is_too_deep(solved.instant);
   tell_what_overlaps(solved.instant);
   tell_what_was_flung(solved.instant);
@@ -165,7 +165,7 @@ void ContactNotices::accept(const SolvedInstant& solved) {
       strain = now;
       const auto facets = facet_gaps_->of(zone, patches, present_.state.displacement);
       faceted_.erase(zone);
-      if (facets && std::abs(facets->times() - 1) > pressure_that_counts)
+      if (facets && std::abs(facets->gap) > gap_that_counts * facets->give)
         faceted_.emplace(zone, Faceted{solved.instant, *facets});
       coarse_.erase(zone);
       if (const auto coarse = contact.coarse(zone, patches)) coarse_.emplace(zone, Coarse{solved.instant, *coarse});
@@ -261,15 +261,14 @@ void ContactNotices::end(bool /*completed*/) {
   }
   for (const auto& [zone, faceted] : faceted_) {
     const ContactZone& names = present_.problem.contact->zones[zone];
-    const double times = faceted.facets.times();
+    const bool apart = faceted.facets.gap > 0;
     inform("EVOLUTION_60", {{"slave", names.slave_group},
                             {"master", names.master_group},
-                            {"what", part(faceted.facets.gap > 0 ? "facets_keep_apart" : "facets_overlap")},
+                            {"what", part(apart ? "facets_keep_apart" : "facets_overlap")},
                             {"gap", fmt::format("{:.3g}", std::abs(faceted.facets.gap))},
                             {"instant", fmt::format("{:.9g}", faceted.instant)},
                             {"give", fmt::format("{:.3g}", faceted.facets.give)},
-                            {"times", times < most_times ? fmt::format("{:.2g}", times)
-                                                         : part("more_than", {{"value", fmt::format("{:g}", most_times)}})}});
+                            {"wrong", part(apart ? "pressure_too_low" : "pressure_too_high")}});
   }
 }
 

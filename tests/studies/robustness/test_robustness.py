@@ -480,7 +480,7 @@ class Skins(StudyTest):
 
     def test_fits_that_facets_spoil_are_told(self):
         """By an overlap of 0.04: the chords of 24 and of 30 edges leave a sixth of half the difference of their squared angles of it, more than the fit; a
-        quarter of it by edges of half the length, a sixteenth by a quarter, which pressures show. What both skins give way by is what is left of it."""
+        quarter of it by edges of half the length, a sixteenth by a quarter, which pressures show."""
         for kind, finer, told in (("QUAD4", 1, True), ("QUAD4", 2, True), ("QUAD4", 4, False), ("QUAD8", 1, False)):
             figures, err = self.rings((kind, 24 * finer), (kind, 30 * finer), 0.04)
             self.assertEqual("EVOLUTION_60" in figures.get("alarms", []), told, (kind, finer))
@@ -488,8 +488,6 @@ class Skins(StudyTest):
                 gap = 20 / 12 * ((2 * math.pi / (24 * finer)) ** 2 - (2 * math.pi / (30 * finer)) ** 2)
                 said = re.search(r"keep them apart by (\S+) on average", err)
                 self.assertAlmostEqual(float(said[1]), gap, delta=0.03 * gap)
-            if told and gap < 0.04:
-                self.assertAlmostEqual(float(re.search(r"it is about (\S+) times", err)[1]), (0.04 - gap) / 0.04, delta=0.05)
 
     def test_facets_that_lie_alike_spoil_no_fit(self):
         """Chords of the same length, whose ends meet, leave nothing: their overlap is the one of the fit; nor do the sides of a hexagon, however their cells
