@@ -148,5 +148,23 @@ R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=HOLD), _
         self.assertEqual(self.corrected((1, 0.005, 4, 0.02, 6, 0.018, 10, 0.03)), [1, 2, 7])  # whether it went on to 2 nobody knows
 
 
+class Softening(LoadTest):
+    def test_a_bar_that_has_softened_to_nothing_carries_no_more(self):
+        """E = 2000, E_T = -20: R = 9 - 19.8 p is nothing at p = 1 / 2.2, where the bar has no stress and that strain; what is beyond has no yield stress."""
+        run = self.run_text([flat_block("QUAD8", size=(1.0, 1.0))], """
+model(20, 'AXIS', DEFI_MATERIAU(ELAS=_F(E=2000.0, NU=0.3), ECRO_LINE=_F(SY=9.0, D_SIGM_EPSI=-20.0)))
+HOLD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA='LEFT', DX=0), _F(GROUP_MA='BASE', DY=0)))
+PULL = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='TOP', DY=1.0))
+LIST = DEFI_LIST_REEL(DEBUT=0.0, INTERVALLE=_F(JUSQU_A=1.0, NOMBRE=10))
+R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=HOLD), _F(CHARGE=PULL, FONC_MULT=RAMP)), INCREMENT=_F(LIST_INST=LIST),
+                       COMPORTEMENT=_F(RELATION='VMIS_ISOT_LINE')))
+""")
+        self.assertEqual(run.status, 3, run.stdout[-2000:])
+        self.assertIn("a yield stress that softening has brought to nothing", run.stderr)
+        reached = [float(instant) for instant in re.findall(r"Converged at the instant (\S+) with", run.stdout)]
+        self.assertGreater(max(reached), 0.4 - 1e-9)
+        self.assertLess(max(reached), 1 / 2.2)
+
+
 if __name__ == "__main__":
     unittest.main()
