@@ -235,18 +235,18 @@ std::optional<FacetOverlap> FacetGaps::overlap(std::int32_t zone) {
 std::optional<AlternatingPressures> FacetGaps::few_press(std::int32_t zone, const Patchwise& patches) {
   const ContactGeometry& geometry = contact_.geometry();
   const std::map<std::size_t, double>& gaps = of_patches(zone);
-  double nearest = -std::numeric_limits<double>::infinity(),
-         largest = 0;  // of those that press: the largest gap between curves
+  // of those that press
+  double farthest = -std::numeric_limits<double>::infinity(), largest = 0;  // gap between curves; strain
   AlternatingPressures found{0, 0, AlternatingBy::few_patches};
   std::size_t pressing = 0, near = 0;
   for (const auto& [patch, gap] : gaps) {
     if (patches.status[patch] != Status::active) continue;
     ++pressing;
-    nearest = std::max(nearest, geometry.gap(patch) - gap);
+    farthest = std::max(farthest, geometry.gap(patch) - gap);
     if (const double strain = contact_.strain(patch, patches); strain >= largest) largest = strain, found.patch = patch;
   }
   for (const auto& [patch, gap] : gaps)
-    near += patches.status[patch] == Status::active || (contact_.is_covered(patch) && geometry.gap(patch) - gap <= nearest);
+    near += patches.status[patch] == Status::active || (contact_.is_covered(patch) && geometry.gap(patch) - gap <= farthest);
   if (pressing == 0 || near < fewest) return std::nullopt;
   found.pressing = static_cast<double>(pressing) / static_cast<double>(near);
   found.share = 1 - found.pressing;

@@ -36,8 +36,8 @@ class FacetGaps {
   /// Averages over the patches that press, or would if skins were curved; nothing where these have no curves.
   /// @param displacement (n_nodes, dimension)
   std::optional<FacetGap> of(std::int32_t zone, const Patchwise& patches, std::span<const double> displacement);
-  /// At the initial geometry, the patch that overlaps most: nothing where most of what
-  /// overlaps does by more than its facets explain; patches without curves are passed over.
+  /// At the initial geometry, the patch that overlaps most: nothing where most of what overlaps does by more than its facets
+  /// explain; patches without curves are passed over.
   std::optional<FacetOverlap> overlap(std::int32_t zone);
   /// Where few of the patches press that would lie as near to their master as these if skins were curved.
   std::optional<AlternatingPressures> few_press(std::int32_t zone, const Patchwise& patches);

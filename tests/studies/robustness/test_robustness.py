@@ -490,8 +490,7 @@ class Skins(StudyTest):
                 self.assertAlmostEqual(float(said[1]), gap, delta=0.03 * gap)
 
     def test_facets_that_lie_alike_spoil_no_fit(self):
-        """Chords of the same length, whose ends meet, leave nothing: their overlap is the one of the fit; nor do the sides of a hexagon, however their cells
-        lie, for they are no curve."""
+        """Chords of the same length, whose ends meet, leave nothing: their overlap is the one of the fit."""
         figures, _ = self.rings(("QUAD4", 24), ("QUAD4", 24), 0.04)
         self.assertEqual([a for a in figures.get("alarms", []) if a in ("EVOLUTION_22", "EVOLUTION_60")], [])
 
