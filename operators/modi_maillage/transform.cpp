@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <vector>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
@@ -70,7 +71,15 @@ void mirror(Mesh& mesh, const Keywords& factor) {
 
 }  // namespace
 
-bool transform(Mesh& mesh, const Keywords& keywords) {
+namespace {
+
+double largest(const Mesh& mesh) {
+  double most = 0;
+  for (const double coordinate : mesh.coordinates) most = std::max(most, std::abs(coordinate));
+  return most;
+}
+
+bool move(Mesh& mesh, const Keywords& keywords) {
   if (keywords.has("TRANSLATION")) {
     const Vec3 by = keywords.vector("TRANSLATION", mesh.dimension);
     each_node(mesh, [&](Vec3 x) { return x + by; });
@@ -84,6 +93,27 @@ bool transform(Mesh& mesh, const Keywords& keywords) {
   for (const Keywords& factor : keywords.factors("ROTATION")) rotate(mesh, factor);
   for (const Keywords& factor : keywords.factors("SYMETRIE")) mirror(mesh, factor);
   return keywords.has("ROTATION") || keywords.has("SYMETRIE");
+}
+
+/// A mesh without volumes that has come to lie in the plane z = 0 is one of the plane. @param size of coordinates that were
+/// moved
+void lie_down(Mesh& mesh, double size) {
+  constexpr double round_off = 1e-14;
+  if (mesh.dimension != 3) return;
+  const std::vector<double> in_space = mesh.coordinates;
+  for (std::size_t n = 0; n < mesh.n_nodes(); ++n)
+    if (double& z = mesh.coordinates[3 * n + 2]; std::abs(z) <= round_off * size) z = 0;
+  mesh.dimension = least_dimension(mesh);
+  if (mesh.dimension == 3) mesh.coordinates = in_space;
+}
+
+}  // namespace
+
+bool transform(Mesh& mesh, const Keywords& keywords) {
+  const double before = largest(mesh);
+  if (!move(mesh, keywords)) return false;
+  lie_down(mesh, std::max(before, largest(mesh)));
+  return true;
 }
 
 }  // namespace lacon

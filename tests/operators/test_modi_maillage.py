@@ -49,6 +49,21 @@ class ModiMaillage(OperatorTest):
         mesh = self.moved(ROTATION=[{"POIN_1": [1.0, 0.0], "ANGLE": 90.0}, {"POIN_1": [0.0, 0.0], "ANGLE": 180.0}])
         np.testing.assert_allclose(mesh.coordinates[:, :2], [(-1 + y, 1 - x) for x, y in NODES], atol=1e-15)
 
+    def test_a_sheet_that_comes_to_lie_in_the_plane_is_a_mesh_of_the_plane(self):
+        high, upright = [[x, y, 0.3] for x, y in NODES], [[x, 7.0, y] for x, y in NODES]
+        self.write_mesh("mesh_2", high, CELLS, GROUPS)
+        self.assertEqual(self.attributes("mesh_2")["dimension"], 3)
+        self.moved("mesh_2", TRANSLATION=[0.0, 0.0, -0.1])
+        self.assertEqual(self.attributes("mesh_2")["dimension"], 3)
+        moved = self.moved("mesh_2", TRANSLATION=[0.0, 0.0, -0.2])  # 5.6e-17 is left
+        self.assertEqual(self.attributes("mesh_2")["dimension"], 2)
+        np.testing.assert_array_equal(moved.coordinates[:, 2], 0)
+        self.write_mesh("mesh_3", upright, CELLS, GROUPS)
+        self.moved("mesh_3", ROTATION=[{"POIN_1": [0.0, 7.0, 0.0], "DIR": [1.0, 0.0, 0.0], "ANGLE": -90.0}])
+        moved = self.moved("mesh_3", TRANSLATION=[0.0, -7.0])
+        self.assertEqual(self.attributes("mesh_3")["dimension"], 2)
+        np.testing.assert_allclose(moved.coordinates[:, :2], NODES, atol=1e-14)
+
     def write_tetrahedron(self):
         points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
         self.write_mesh("mesh_2", points, [("TRIA3", [0, 2, 1]), ("TETRA4", [0, 1, 2, 3])], {"LOW": [0]})
