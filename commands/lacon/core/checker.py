@@ -5,6 +5,7 @@ of a factor keyword that may be repeated are counted from 1.
 """
 
 import math
+import operator
 import os
 import re
 
@@ -201,14 +202,13 @@ class _Check:
         self.problem("KEYWORD_13", path, value=_show(value), instead=instead)
 
     def bounds(self, path, row, value):
-        tests = {"above": (lambda x, b: x > b, "greater than"), "at_least": (lambda x, b: x >= b, "at least"),
-                 "below": (lambda x, b: x < b, "less than"), "at_most": (lambda x, b: x <= b, "at most")}
+        tests = {"above": operator.gt, "at_least": operator.ge, "below": operator.lt, "at_most": operator.le}
         if self.largest and isinstance(value, float):
             row = {"at_least": -self.largest, "at_most": self.largest, **row}
         limits = {"at_least": -2**63, "at_most": _largest_count if "at_least" in row else 2**63 - 1, **row} if row["type"] == "integer" else row
-        for key, (holds, words) in tests.items():
+        for key, holds in tests.items():
             if key in limits and not holds(value, limits[key]):
-                self.problem("KEYWORD_15", path, value=_show(value), bound=f"{words} {limits[key]:.10g}")
+                self.problem("KEYWORD_15", path, value=_show(value), bound=catalog.part(f"bound_{key}", bound=f"{limits[key]:.10g}"))
                 return
 
 
