@@ -21,7 +21,7 @@ constexpr int patience = 3;
 }  // namespace
 
 void MatrixChoice::start_instant(bool follows) {
-  unstable_ = far_ = balances_ = false;
+  unstable_ = replaced_ = far_ = balances_ = false;
   follows_ = follows;
   slow_ = 0;
   settled_ = traits_.settling;
@@ -43,11 +43,10 @@ bool MatrixChoice::note_pivots(NewtonMatrix present, bool curves, std::int64_t n
   if (negative <= constraints || balances_ || follows_) return false;
   if (present.curved && curves) {
     flat_.begin();
-    return true;
+    return replaced_ = true;
   }
   if (present.solid != SolidMatrix::tangent || traits_.linear) return false;
-  unstable_ = true;
-  return true;
+  return unstable_ = replaced_ = true;
 }
 
 bool MatrixChoice::note_residual(const Unbalance& unbalance) {

@@ -69,6 +69,12 @@ class MatrixChoice {
   /// More negative pivots than constraints: beyond a limit point or a bifurcation, from where a step of the tangent leads
   /// anywhere. @param curves gaps of active patches have second derivatives @return whether the matrix has to be another one
   bool note_pivots(NewtonMatrix present, bool curves, std::int64_t negative, std::int64_t constraints);
+  /// Whether a consistent matrix of the instant was unstable, and another one took its place.
+  bool has_replaced() const { return replaced_; }
+  /// The consistent one, as far as it is made.
+  NewtonMatrix consistent() const { return {SolidMatrix::tangent, !waits_}; }
+  /// Whether its pivots tell: of a tangent that is made symmetric they do not.
+  bool pivots_tell() const { return traits_.symmetric && !traits_.made_symmetric; }
   /// Whether most iterations of the instant went without what made the consistent matrix unstable, in contact.
   bool leaves_unstable() const { return 2 * without_ > iterations_; }
   /// How many patches an iteration has changed, before its matrix is made. @param flows a law does: the elastic matrix is
@@ -82,6 +88,7 @@ class MatrixChoice {
   std::int64_t settled_ = 0;          ///< iterations without change of status
   bool waits_;                        ///< for a residual that falls slowly with the second derivatives of gaps
   bool unstable_ = false;             ///< the tangent of an iterate of this instant was
+  bool replaced_ = false;             ///< that, or second derivatives of gaps were left out for it
   Doubling flat_;                     ///< iterations without terms of stress and second derivatives of gaps
   int slow_ = 0;                      ///< iterations in a row without them, near an equilibrium, that came a little nearer
   bool follows_ = false;              ///< the instant takes the matrix as it is

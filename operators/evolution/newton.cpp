@@ -218,6 +218,7 @@ void Newton::finish_instant(double instant, const StaticState& previous, StaticS
             .before = {.displacement = previous.displacement, .pressure = previous.patches.lambda},
             .external = external,
             .negative = line.solution.factorisation.negative_pivots,
+            .of_consistent = consistent_pivots(previous, state),
             .constraints = line.constraints,
             .unbalanced = line.round_off && line.rela > few_digits ? line.rela : 0,
             .worst_dof = line.worst_dof};
@@ -368,11 +369,13 @@ void Newton::note_round_off() {
 void Newton::note_stability() {
   const Stability stability = stability_of(choice_.follows_unstable(), found_.negative, found_.constraints);
   unstable_path_.solve(stability != Stability::stable);
-  if (stability == Stability::stable || std::exchange(unstable_told_, true)) return;
+  // iterations without what makes a matrix unstable leave such an equilibrium, but not where symmetry keeps them on it
+  const bool kept = found_.of_consistent && *found_.of_consistent > found_.constraints;
+  if ((stability == Stability::stable && !kept) || std::exchange(unstable_told_, true)) return;
   const std::string instant = fmt::format("{:.9g}", found_.instant);
   if (stability == Stability::unknown) return inform("EVOLUTION_75", {{"instant", instant}});
   inform("EVOLUTION_54", {{"instant", instant},
-                          {"negative", std::to_string(*found_.negative)},
+                          {"negative", std::to_string(kept ? *found_.of_consistent : *found_.negative)},
                           {"constraints", std::to_string(found_.constraints)}});
 }
 

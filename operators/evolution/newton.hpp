@@ -100,6 +100,9 @@ class Newton {
   /// @param external forces as the instant began with them  @param line the last iteration
   void finish_instant(double instant, const StaticState& previous, StaticState& state, const std::vector<double>& external,
                       const IterationReport& line);
+  /// Where the instant ends with a matrix that has taken the place of the consistent one: the pivots of that, at a solution.
+  /// Nothing where it did not, they do not tell, or another factor is too much.
+  std::optional<std::int64_t> consistent_pivots(const StaticState& previous, const StaticState& state);
   /// Whether what is solved is an equilibrium that is not stable: EVOLUTION_54, once.
   void note_stability();
   /// Whether round-off of what is stiff left more than is asked: EVOLUTION_69, once.
@@ -217,8 +220,9 @@ class Newton {
   struct Found {
     double instant = 0;
     KnownState before;
-    std::vector<double> external;          ///< forces as the instant began with them
-    std::optional<std::int64_t> negative;  ///< pivots of the last iteration; iterations of PETSc know none
+    std::vector<double> external;               ///< forces as the instant began with them
+    std::optional<std::int64_t> negative;       ///< pivots of the last iteration; iterations of PETSc know none
+    std::optional<std::int64_t> of_consistent;  ///< consistent_pivots()
     std::int64_t constraints = 0;
     double unbalanced = 0;  ///< forces over the largest, where that is round-off and more than asked
     std::int64_t worst_dof = -1;

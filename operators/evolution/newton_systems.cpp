@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lacon/assembly/dependent_rows.hpp"
+#include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/evolution/linear_statuses.hpp"
@@ -20,12 +21,13 @@
 namespace lacon {
 namespace {
 
-constexpr int most_rests = 4;        // in an instant: how often bodies are led to patches by their load
-constexpr int most_flung = 6;        // in an iteration: how often bodies are held that it flings
-constexpr int most_rounds = 6;       // of statuses in an iteration
-constexpr int most_raised = 12;      // in an iteration: how often the resistance to creeping is
-constexpr double furthest = 0.5;     // cells, by which an iteration may creep
-constexpr double hardly_less = 0.8;  // of a motion: what is driven by gaps heeds no resistance
+constexpr int most_rests = 4;                         // in an instant: how often bodies are led to patches by their load
+constexpr int most_flung = 6;                         // in an iteration: how often bodies are held that it flings
+constexpr int most_rounds = 6;                        // of statuses in an iteration
+constexpr int most_raised = 12;                       // in an iteration: how often the resistance to creeping is
+constexpr std::int64_t most_to_look_again = 100'000;  // equations: a factor beside that of the iterations
+constexpr double furthest = 0.5;                      // cells, by which an iteration may creep
+constexpr double hardly_less = 0.8;                   // of a motion: what is driven by gaps heeds no resistance
 constexpr double of_a_round = 1e-6;  // of what the solution before leaves of its right side, iterations may leave
 // Of what resists most: motions that are resisted by less, where bodies are flung. Rows of contact that say the same of a rigid
 // body differ by its strains, and that is all that is left to resist.
@@ -44,6 +46,20 @@ void Newton::assemble(const StaticState& state, const StaticState& previous, Sol
   equilibrium_.assemble(state, previous, choice_.suited(asked, equilibrium_.touches(state)));
   resists_ = creep_.has_value();
   if (creep_) equilibrium_.resist(creep_->resistance());
+}
+
+std::optional<std::int64_t> Newton::consistent_pivots(const StaticState& previous, const StaticState& state) {
+  const SparseMatrix& matrix = equilibrium_.system().matrix();
+  if (unstable_told_ || creep_ || !choice_.has_replaced() || !choice_.pivots_tell() || matrix.elsewhere() ||
+      matrix.size() > most_to_look_again)
+    return std::nullopt;
+  const NewtonMatrix present = equilibrium_.matrix();
+  equilibrium_.assemble(state, previous, choice_.consistent());
+  MumpsEngine engine;
+  engine.analyse(matrix);
+  const std::optional<std::int64_t> found = engine.factorise(matrix).negative_pivots;
+  equilibrium_.assemble(state, previous, present);
+  return found;
 }
 
 std::vector<double> Newton::solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
