@@ -16,7 +16,7 @@
 namespace lacon {
 namespace {
 
-constexpr double most_turned = 0.1;    // radians: taken for a strain of half of its square, 0.5 %
+constexpr double most_turned = 0.05;   // radians: taken for a strain of half of its square, 0.1 %, as that of a press fit
 constexpr double most_strained = 0.2;  // the strain of a length by its true and by its initial length differ by a tenth of it
 constexpr double share = 0.1;          // of the cells of a body: edges that press are strained by any amount
 
