@@ -19,6 +19,7 @@ if(CCACHE)
 endif()
 
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # -Wrestrict: false alarms of g++ 12 on std::string
+add_compile_options($<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=400000>)  # kB before it collects garbage: 7 % less time, a fifth more memory
 if(LACON_WARNINGS_AS_ERRORS)
   add_compile_options(-Werror)
 endif()

@@ -12,15 +12,15 @@
 
 namespace lacon {
 namespace {
-constexpr std::array<std::string_view, 4> names{"NOEU", "ELGA", "ELNO", "ELEM"};
+constexpr std::array<std::string_view, 4> location_names{"NOEU", "ELGA", "ELNO", "ELEM"};
 }
 
-std::string_view location_name(Location location) { return names[static_cast<std::size_t>(location)]; }
+std::string_view location_name(Location location) { return location_names[static_cast<std::size_t>(location)]; }
 
 Location find_location(std::string_view name) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) throw std::logic_error("no location is called " + std::string(name));
-  return static_cast<Location>(at - names.begin());
+  const auto at = std::find(location_names.begin(), location_names.end(), name);
+  if (at == location_names.end()) throw std::logic_error("no location is called " + std::string(name));
+  return static_cast<Location>(at - location_names.begin());
 }
 
 int Field::component(std::string_view component_name) const {

@@ -7,7 +7,7 @@
 //                                                              -> done FLOPS ENTRIES WHOLE-ENTRIES NEGATIVE-PIVOTS
 //                                                                 and the equations of null pivots
 //   reduce PIECE PATH        right sides (k, size), and room for what they leave to the border (k, border)  -> done
-//   reduce PIECE PATH PATH   likewise of sparse ones, which the second memory has (SparseSides)             -> done
+//   reduce PIECE PATH PATH   likewise of sparse ones, which the second memory has (SparseSideSizes)             -> done
 //   expand PIECE PATH        the same memory, with solutions of the border: right sides become solutions    -> done
 //   open PATH                to see whether it can                                                           -> done
 //   order PATH               OrderMemory: the order of elimination is found, and its subtrees
@@ -150,7 +150,7 @@ class EntryPlaces {
 };
 
 /// Behind it in its memory: offset (count + 1), int64; value (entries) in the precision; index (entries), int32.
-struct SparseSides {
+struct SparseSideSizes {
   std::int64_t count = 0, entries = 0;
 };
 

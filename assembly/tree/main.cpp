@@ -75,7 +75,7 @@ class Piece {
   }
   std::string reduce(const SharedMemory& memory, const SharedMemory& sparse) {
     const auto [sides, border] = parts(memory);
-    const auto& sizes = *reinterpret_cast<const lacon::SparseSides*>(sparse.data());
+    const auto& sizes = *reinterpret_cast<const lacon::SparseSideSizes*>(sparse.data());
     const auto count = static_cast<std::size_t>(sizes.count), entries = static_cast<std::size_t>(sizes.entries);
     const auto* const offset = reinterpret_cast<const std::int64_t*>(sparse.data() + sizeof sizes);
     const auto* const value = reinterpret_cast<const Real*>(offset + count + 1);

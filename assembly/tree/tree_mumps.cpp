@@ -21,7 +21,7 @@ constexpr int most_rounds = 3;
 /// Numbers that a process answers of a factorisation, before the equations of such pivots.
 constexpr std::size_t of_a_piece = 4;
 /// Columns of a Schur complement that a thread adds up at a time.
-constexpr std::size_t columns_together = 64;
+constexpr std::size_t columns_added = 64;
 
 /// Places of some equations among themselves, from 1.
 std::vector<int> ranks(std::span<const std::int32_t> equations, std::span<const int> place) {
@@ -192,7 +192,7 @@ void TreeMumps<Real>::number_top() {
 template <class Real>
 void TreeMumps<Real>::add_to_top(const Piece& piece, std::span<const Real> schur, std::span<Real> values) const {
   const std::size_t n = piece.border.size();
-  parallel_for(n, columns_together, [&](const LoopBlock& block) {
+  parallel_for(n, columns_added, [&](const LoopBlock& block) {
     const std::size_t first = settings_.symmetric ? block.first : 0;
     std::vector<std::int64_t> next;  // of each column: rows go on from there
     for (std::size_t b = block.first; b < block.last; ++b)
@@ -471,8 +471,8 @@ std::vector<SharedMemory> TreeMumps<Real>::shared_out(std::span<const std::int64
   }
   std::vector<SharedMemory> memory;
   for (const Lists& lists : of_pieces) {
-    const SparseSides sizes{.count = static_cast<std::int64_t>(count),
-                            .entries = static_cast<std::int64_t>(lists.index.size())};
+    const SparseSideSizes sizes{.count = static_cast<std::int64_t>(count),
+                                .entries = static_cast<std::int64_t>(lists.index.size())};
     const std::span<const std::byte> parts[] = {std::as_bytes(std::span(&sizes, 1)), std::as_bytes(std::span(lists.offset)),
                                                 std::as_bytes(std::span(lists.value)), std::as_bytes(std::span(lists.index))};
     std::size_t size = 0;

@@ -14,6 +14,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/operators/affe_char/component_names.hpp"
 #include "lacon/operators/affe_char/nodal_forces.hpp"
 #include "lacon/operators/affe_char/places.hpp"
 #include "lacon/operators/affe_char/relations.hpp"
@@ -72,7 +73,6 @@ void load_nodes(const LoadScene& scene, const std::vector<Keywords>& factors, st
 }
 
 constexpr std::string_view angular_velocity[] = {"WX", "WY", "WZ"}, axis_point[] = {"X", "Y", "Z"};  // of ROTATION
-constexpr std::string_view translations[] = {"DX", "DY", "DZ"}, forces[] = {"FX", "FY", "FZ"};
 
 // ---------------------------------------------------------------------------------------------------- cells
 
@@ -205,7 +205,7 @@ void load_gravity(Load& load, const LoadScene& scene, const Keywords& keywords) 
         if (row.geometry != catalog::Geometry::space && direction[2] != 0) refuse(part("out_of_plane"));
         if (row.geometry == catalog::Geometry::axis && direction[0] != 0) refuse(part("not_along_axis"));
         for (std::size_t d = 0; d < static_cast<std::size_t>(catalog::dimension_of(row.geometry)); ++d)
-          given.add(cell, part("place_cell", {{"cell", cell_name(cell)}}), std::string(forces[d]),
+          given.add(cell, part("place_cell", {{"cell", cell_name(cell)}}), std::string(force_along[d]),
                     {factor.real("GRAVITE") * direction[d], ""}, named.source);
       }
   }
@@ -288,7 +288,7 @@ void add_imposed(std::vector<Keywords>& imposed, const Keywords& factor, int dim
   const std::vector<std::string> held = factor.texts("BLOCAGE");
   if (!factor.has("LIAISON") && std::find(held.begin(), held.end(), "DEPLACEMENT") == held.end()) return;
   nlohmann::json values = factor.values();
-  for (int d = 0; d < dimension; ++d) values[std::string(translations[d])] = 0.0;
+  for (int d = 0; d < dimension; ++d) values[translation[d]] = 0.0;
   imposed.emplace_back(std::move(values), factor.path(""));
 }
 
@@ -301,7 +301,7 @@ Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const B
   for (const char* const keyword : {"MECA_IMPO", "DDL_IMPO", "FACE_IMPO", "ARETE_IMPO"})
     for (const Keywords& factor : keywords.factors(keyword)) add_imposed(imposed, factor, model.dimension);
   load_nodes(scene, imposed, unknowns(), "CHARGE_4", load.imposed);
-  load_nodes(scene, along_the_mesh(scene, keywords.factors("FORCE_NODALE")), forces, "CHARGE_5", load.nodal);
+  load_nodes(scene, along_the_mesh(scene, keywords.factors("FORCE_NODALE")), force_along, "CHARGE_5", load.nodal);
   load_edges(load, scene, keywords);
   load_cells(load, scene, keywords);
   load_gravity(load, scene, keywords);

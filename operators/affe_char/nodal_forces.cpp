@@ -8,6 +8,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/elements/reference.hpp"
+#include "lacon/operators/affe_char/component_names.hpp"
 #include "lacon/operators/fields/axes.hpp"
 #include "lacon/operators/fields/timed_values.hpp"
 #include "lacon/structures/vector.hpp"
@@ -15,7 +16,6 @@
 namespace lacon {
 namespace {
 
-constexpr const char* forces[] = {"FX", "FY", "FZ"};
 constexpr std::size_t edge_points = 4;  // integration points of an edge
 
 /// The integration points of an edge on the initial geometry.
@@ -86,12 +86,12 @@ std::vector<Keywords> along_the_mesh(const LoadScene& scene, const std::vector<K
     std::size_t lost = 0;
     const Eigen::Matrix3d axes = Frame(scene.mesh, factor, false).at(Eigen::Vector3d::Zero(), lost);
     Eigen::Vector3d given;
-    for (int d = 0; d < 3; ++d) given[d] = factor.optional_real(forces[d]).value_or(0);
+    for (int d = 0; d < 3; ++d) given[d] = factor.optional_real(force_along[d]).value_or(0);
     const Eigen::Vector3d force = axes.transpose() * given;
     nlohmann::json values = factor.values();
     for (int d = 0; d < 3; ++d) {
-      values.erase(forces[d]);
-      if (d < scene.mesh.dimension) values[forces[d]] = force[d];
+      values.erase(std::string(force_along[d]));
+      if (d < scene.mesh.dimension) values[std::string(force_along[d])] = force[d];
     }
     turned.back() = Keywords(std::move(values), factor.path(""));
   }
@@ -112,7 +112,7 @@ void load_edges(Load& load, const LoadScene& scene, const Keywords& keywords) {
                             {"carrier", part("edge_in_space")}});
         EdgeForce& edge = edges[cell];
         for (std::size_t d = 0; d < 3; ++d)
-          if (factor.has(forces[d])) edge.values[d] = value_of(scene.base, factor, forces[d]);
+          if (factor.has(force_along[d])) edge.values[d] = value_of(scene.base, factor, force_along[d]);
         edge.source = source;
       }
     }
@@ -126,7 +126,7 @@ void load_edges(Load& load, const LoadScene& scene, const Keywords& keywords) {
     for (std::size_t d = 0; d < 3; ++d) {
       if (given.values[d] == LoadValue{}) continue;
       for (std::size_t a = 0; a < nodes.size(); ++a) {
-        scene.check_dof(nodes[a], std::string("D") + forces[d][1], given.source);
+        scene.check_dof(nodes[a], std::string("D") + force_along[d][1], given.source);
         for (std::size_t p = 0; p < edge_points; ++p)
           of_node[{nodes[a], d}] +=
               points[edge].length[p] * points[edge].shape[p * nodes.size() + a] * values[(edge * edge_points + p) * 3 + d];
@@ -134,7 +134,7 @@ void load_edges(Load& load, const LoadScene& scene, const Keywords& keywords) {
     }
     ++edge;
   }
-  for (const auto& [at, value] : of_node) load.nodal.push_back({at.first, forces[at.second], {value, ""}});
+  for (const auto& [at, value] : of_node) load.nodal.push_back({at.first, std::string(force_along[at.second]), {value, ""}});
 }
 
 }  // namespace lacon

@@ -9,6 +9,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/operators/affe_char/component_names.hpp"
 #include "lacon/operators/affe_char/ties.hpp"
 #include "lacon/operators/meshing/named_nodes.hpp"
 #include "lacon/operators/program/study_function.hpp"
@@ -67,8 +68,6 @@ void add_relation(Load& load, const LoadScene& scene, const std::string& source,
 }
 
 namespace {
-
-constexpr const char* translation[] = {"DX", "DY", "DZ"};
 
 [[noreturn]] void wrong_count(const Keywords& factor, std::string_view keyword, std::size_t found, std::size_t expected) {
   fail("CHARGE_11",

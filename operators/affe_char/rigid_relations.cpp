@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "lacon/operators/affe_char/component_names.hpp"
 #include "lacon/operators/affe_char/relations.hpp"
 #include "lacon/structures/vector.hpp"
 
@@ -12,7 +13,6 @@ namespace {
 
 using Terms = std::vector<RelationTerm>;
 
-constexpr const char* translation[] = {"DX", "DY", "DZ"};
 constexpr double same_place = 1e-9;  // of the size of a group: points that coincide, points on one line
 constexpr Vec3 axis_of_space[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 

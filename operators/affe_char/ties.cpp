@@ -8,6 +8,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/operators/affe_char/component_names.hpp"
 #include "lacon/operators/affe_char/relations.hpp"
 #include "lacon/operators/fields/axes.hpp"
 #include "lacon/operators/fields/cell_locator.hpp"
@@ -16,8 +17,7 @@
 namespace lacon {
 namespace {
 
-constexpr const char* translation[] = {"DX", "DY", "DZ"};
-constexpr double round_off = 1e-15;  // of a direction's cosine
+constexpr double no_cosine = 1e-15;  // of a direction's cosine
 
 /// The cells of GROUP_MA_MAIT that have the mesh's dimension and elements.
 std::vector<std::int32_t> master_cells(const LoadScene& scene, const Keywords& factor) {
@@ -43,7 +43,7 @@ void hold_oblique(Load& load, const LoadScene& scene, const Keywords& factor) {
     for (const std::int32_t node : distinct_nodes(named_nodes(scene, factor))) {
       std::vector<RelationTerm> terms;
       for (int d = 0; d < 3; ++d)
-        if (std::abs(axes(axis, d)) > round_off) terms.push_back({node, translation[d], axes(axis, d)});
+        if (std::abs(axes(axis, d)) > no_cosine) terms.push_back({node, translation[d], axes(axis, d)});
       add_relation(load, scene, factor.path(keyword), std::move(terms), value);
     }
   }
@@ -163,7 +163,7 @@ void follow_on_average(Load& load, const LoadScene& scene, const Keywords& facto
     std::vector<RelationTerm> terms{{masters.front(), component, 1.0}};
     for (const Row& row : rows) {
       const double coefficient = row.term.coefficient * inverse.row(d).dot(row.motion);
-      if (std::abs(coefficient) > round_off) terms.push_back({row.term.node, row.term.component, -coefficient});
+      if (std::abs(coefficient) > no_cosine) terms.push_back({row.term.node, row.term.component, -coefficient});
     }
     add_relation(load, scene, source, std::move(terms), {});
   }

@@ -26,7 +26,7 @@ NodeGraph lattice(int n, const AreLinked& are_linked) {
   }
   return graph;
 }
-constexpr auto always = [](int, int) { return true; };
+constexpr auto takes_all = [](int, int) { return true; };
 
 std::map<std::int32_t, std::set<std::int32_t>> nodes_of(const Aggregates& aggregates) {
   std::map<std::int32_t, std::set<std::int32_t>> nodes;
@@ -36,7 +36,7 @@ std::map<std::int32_t, std::set<std::int32_t>> nodes_of(const Aggregates& aggreg
 
 // Of two nodes along the sides where the first node is.
 TEST(Aggregates, OfALatticeAreCubesOfThreeNodes) {
-  const Aggregates found = aggregated(lattice(8, always), std::vector<std::uint8_t>(512, 1));
+  const Aggregates found = aggregated(lattice(8, takes_all), std::vector<std::uint8_t>(512, 1));
   EXPECT_EQ(found.count, 27);
   const auto place = [](int i) { return (i + 1) / 3; };
   for (int i = 0; i < 512; ++i) EXPECT_EQ(found.of_node[i], place(i / 64) * 9 + place(i / 8 % 8) * 3 + place(i % 8)) << i;
@@ -44,7 +44,7 @@ TEST(Aggregates, OfALatticeAreCubesOfThreeNodes) {
 
 TEST(Aggregates, AreConnectedAndHaveEachNodeOnce) {
   const int n = 7;  // the last ones are left over
-  const NodeGraph graph = lattice(n, always);
+  const NodeGraph graph = lattice(n, takes_all);
   const Aggregates found = aggregated(graph, std::vector<std::uint8_t>(n * n * n, 1));
   const auto nodes = nodes_of(found);
   EXPECT_EQ(std::ssize(nodes), found.count);
@@ -74,7 +74,7 @@ TEST(Aggregates, LeaveOutWhatDoesNotMove) {
   const int n = 6;
   std::vector<std::uint8_t> moves(n * n * n, 1);
   std::fill_n(moves.begin(), n * n, 0);  // a side that is held
-  const Aggregates found = aggregated(lattice(n, always), moves);
+  const Aggregates found = aggregated(lattice(n, takes_all), moves);
   for (int i = 0; i < n * n * n; ++i) EXPECT_EQ(found.of_node[i] == -1, i < n * n) << i;
 }
 

@@ -10,18 +10,18 @@
 namespace lacon {
 namespace {
 
-constexpr int n_rows = 7, n_columns = 5;  // of blocks
+constexpr int block_rows = 7, block_columns = 5;  // of blocks
 
 /// Some of the blocks, and the matrix that they are.
 template <class Real>
 struct Example {
-  Example(int rows, int columns) : dense(Eigen::MatrixXd::Zero(n_rows * rows, n_columns * columns)) {
+  Example(int rows, int columns) : dense(Eigen::MatrixXd::Zero(block_rows * rows, block_columns * columns)) {
     std::mt19937 random(7);
     std::uniform_real_distribution<Real> entry(-1, 1);
     blocks.rows = rows;
     blocks.columns = columns;
-    for (int i = 0; i < n_rows; ++i) {
-      for (int j = 0; j < n_columns; ++j) {
+    for (int i = 0; i < block_rows; ++i) {
+      for (int j = 0; j < block_columns; ++j) {
         if (i == 3 || (i + 2 * j) % 3 == 0) continue;  // a row has none at all
         blocks.column.push_back(j);
         for (int c = 0; c < columns; ++c)
@@ -44,7 +44,7 @@ template <class Real>
 void expect_products(const BlockKernels<Real>* kernels, int rows, int columns) {
   ASSERT_NE(kernels, nullptr);
   const Example<Real> example(rows, columns);
-  const Eigen::VectorXd x = Eigen::VectorXd::Random(n_columns * columns), z = Eigen::VectorXd::Random(n_rows * rows);
+  const Eigen::VectorXd x = Eigen::VectorXd::Random(block_columns * columns), z = Eigen::VectorXd::Random(block_rows * rows);
   Eigen::VectorXd y = z;
   const double exact = 1e-14;
   kernels->multiply(example.blocks, x.data(), y.data());
@@ -66,13 +66,13 @@ TEST(BlockKernels, MultiplyAsTheWholeMatrix) {
 /// A symmetric matrix of which half is there, in rows of blocks from the diagonal on.
 template <class Real>
 struct HalfExample {
-  explicit HalfExample(int size) : dense(Eigen::MatrixXd::Zero(n_rows * size, n_rows * size)) {
+  explicit HalfExample(int size) : dense(Eigen::MatrixXd::Zero(block_rows * size, block_rows * size)) {
     std::mt19937 random(8);
     std::uniform_real_distribution<Real> entry(-1, 1);
     blocks.rows = blocks.columns = size;
     blocks.is_half = true;
-    for (int i = 0; i < n_rows; ++i) {
-      for (int j = i; j < n_rows; ++j) {
+    for (int i = 0; i < block_rows; ++i) {
+      for (int j = i; j < block_rows; ++j) {
         if (j != i && (i + j) % 3 == 0) continue;
         blocks.column.push_back(j);
         for (int r = 0; r < size; ++r)
@@ -100,7 +100,7 @@ template <class Real>
 void expect_product_of_half(const BlockKernels<Real>* kernels, int size) {
   ASSERT_NE(kernels, nullptr);
   const HalfExample<Real> example(size);
-  const Eigen::VectorXd x = Eigen::VectorXd::Random(n_rows * size), y = Eigen::VectorXd::Random(n_rows * size);
+  const Eigen::VectorXd x = Eigen::VectorXd::Random(block_rows * size), y = Eigen::VectorXd::Random(block_rows * size);
   const Eigen::VectorXd there = padded(x, size), expected = y + example.dense * x;
   Eigen::VectorXd sum = padded(y, size);
   kernels->add_half(example.blocks, there.data(), sum.data());

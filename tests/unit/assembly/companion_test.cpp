@@ -15,13 +15,10 @@
 
 #include "lacon/assembly/processes/shared_memory.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "open_files.hpp"
 
 namespace lacon {
 namespace {
-
-std::ptrdiff_t open_files() {
-  return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), std::filesystem::directory_iterator());
-}
 
 std::vector<std::string> shell(const char* text) { return {"sh", "-c", text}; }
 

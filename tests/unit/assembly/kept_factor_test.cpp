@@ -21,26 +21,26 @@ using test::Chain;
 using test::columns;
 using test::dense;
 
-constexpr int n_nodes = 40, n_rows = 6;
+constexpr int kept_nodes = 40, kept_rows = 6;
 
 /// A chain held at its first node, with rows of multipliers that are on or off (diagonal alone).
-struct Rows {
-  Rows() : chain(n_nodes, n_rows, held()), matrix(chain.numbering, chain.cliques, couplings()) { fill(); }
+struct SwitchedRows {
+  SwitchedRows() : chain(kept_nodes, kept_rows, held()), matrix(chain.numbering, chain.cliques, couplings()) { fill(); }
   static std::vector<std::uint8_t> held() {
-    std::vector<std::uint8_t> free(2 * n_nodes, 1);
+    std::vector<std::uint8_t> free(2 * kept_nodes, 1);
     free[0] = free[1] = 0;
     return free;
   }
   static std::vector<Coupling> couplings() {
     std::vector<Coupling> all;
-    for (int r = 0; r < n_rows; ++r)
-      for (int k = 0; k < 2; ++k) all.push_back({n_nodes + r, 4 + 6 * r + k});
+    for (int r = 0; r < kept_rows; ++r)
+      for (int k = 0; k < 2; ++k) all.push_back({kept_nodes + r, 4 + 6 * r + k});
     return all;
   }
   void fill() {
     matrix.set_zero();
     test::add_springs(matrix, chain);
-    for (int r = 0; r < n_rows; ++r) {
+    for (int r = 0; r < kept_rows; ++r) {
       if (!on[r]) matrix.add_diagonal(chain.numbering.of_patch(r), 0.5 + r);
       for (int k = 0; on[r] && k < 2; ++k)
         matrix.add(std::vector<std::int64_t>{chain.numbering.of_patch(r), chain.numbering.of(4 + 6 * r + k, (r + k) % 2)},
@@ -48,7 +48,7 @@ struct Rows {
     }
   }
   SolutionReport solve(SaddlePointSolver& solver, std::vector<double>& x) const {
-    return solver.solve(matrix, chain.numbering.first[n_nodes], x);
+    return solver.solve(matrix, chain.numbering.first[kept_nodes], x);
   }
   /// What switches some rows.
   SparseSides switching(std::initializer_list<int> some) const {
@@ -74,7 +74,7 @@ struct Rows {
   }
   Chain chain;
   SparseMatrix matrix;
-  std::array<bool, n_rows> on{};
+  std::array<bool, kept_rows> on{};
 };
 
 /// An engine that says nothing of its matrix, at the cost of so many substitutions.
@@ -91,7 +91,7 @@ std::unique_ptr<FactorEngine> low_rank_engine() {
 // GMRES may take as many substitutions as a factorisation costs, and is given up beyond: then the matrix is factorised.
 TEST(KeptFactor, IsGivenUpWhereItsIterationsCostMoreThanAFactorisation) {
   for (const double worth : {10.0, 1000.0}) {
-    Rows rows;
+    SwitchedRows rows;
     SaddlePointSolver solver(poor_engine(worth), {.column_memory = 1e6});
     std::vector<double> x = rows.side(1);
     rows.solve(solver, x);
@@ -109,7 +109,7 @@ TEST(KeptFactor, IsGivenUpWhereItsIterationsCostMoreThanAFactorisation) {
 
 // Nothing has changed: one substitution does, and nobody has to be asked whether a body came loose.
 TEST(KeptFactor, SolvesTheSameMatrixAgain) {
-  Rows rows;
+  SwitchedRows rows;
   rows.on[1] = true;
   rows.fill();
   SaddlePointSolver solver(std::make_unique<MumpsEngine>(), {.work_limit = 1e6, .column_memory = 1e6});
@@ -126,7 +126,7 @@ TEST(KeptFactor, SolvesTheSameMatrixAgain) {
 
 // Digits below the tolerance of the largest right side are round-off: two of them do.
 TEST(KeptFactor, SolvesRoundOffRoughly) {
-  Rows rows;
+  SwitchedRows rows;
   SaddlePointSolver solver(poor_engine(1e6), {.column_memory = 1e6});
   std::vector<double> x = rows.side(1);
   rows.solve(solver, x);
@@ -143,7 +143,7 @@ TEST(KeptFactor, SolvesRoundOffRoughly) {
 // Columns that switch rows are there when those are switched; where memory has no room for whole ones, as bare ones.
 TEST(KeptFactor, NeedsNoColumnTwice) {
   for (const bool room : {true, false}) {
-    Rows rows;
+    SwitchedRows rows;
     SaddlePointSolver solver(std::make_unique<MumpsEngine>(),
                              {.work_limit = 1e6, .column_memory = 0, .least_memory = room ? 1e6 : 0});
     rows.on[0] = true;
@@ -194,7 +194,7 @@ TEST(KeptFactor, NeedsNoColumnTwice) {
 // another process.
 TEST(KeptFactor, KeepsWhatMemoryHasRoomFor) {
   const std::filesystem::path file = std::filesystem::temp_directory_path() / ("kept_columns_" + std::to_string(getpid()));
-  Rows rows;
+  SwitchedRows rows;
   const SaddlePointOptions three{
       .work_limit = 1e6, .column_memory = 0, .least_memory = 0.5 * 3 * static_cast<double>(rows.matrix.size())};
   SaddlePointSolver solver(std::make_unique<MumpsEngine>(), three);
@@ -234,13 +234,13 @@ TEST(KeptFactor, KeepsWhatMemoryHasRoomFor) {
 // Bodies that slide take more couples in: a pattern that has more entries needs no other factor, unless they are large.
 TEST(KeptFactor, ServesAPatternThatGrew) {
   for (const double entry : {0.0, 0.01, 0.5}) {
-    Rows rows;
+    SwitchedRows rows;
     SaddlePointSolver solver(std::make_unique<MumpsEngine>(), {.work_limit = 1e6, .column_memory = 1e6});
     std::vector<double> x = rows.side(1);
     rows.solve(solver, x);
-    std::vector<Coupling> couplings = Rows::couplings();
+    std::vector<Coupling> couplings = SwitchedRows::couplings();
     couplings.push_back({3, 30});
-    couplings.push_back({n_nodes + 1, 35});
+    couplings.push_back({kept_nodes + 1, 35});
     rows.matrix = SparseMatrix(rows.chain.numbering, rows.chain.cliques, couplings);
     rows.on[1] = true;
     rows.fill();
@@ -257,7 +257,7 @@ TEST(KeptFactor, ServesAPatternThatGrew) {
 // Whole columns of a factor of low rank take little more than half the memory, and what is seen of them loses no digit.
 TEST(KeptFactor, PacksColumnsOfLowRank) {
   for (const bool packed : {false, true}) {
-    Rows rows;
+    SwitchedRows rows;
     const auto n = static_cast<std::size_t>(rows.matrix.size());
     const SaddlePointOptions options{.work_limit = 1e6,
                                      .column_memory = 0,
@@ -304,13 +304,13 @@ TEST(KeptFactor, GoesOnInAnotherProcessWithTheSameBits) {
       if (packed) return low_rank_engine();
       return std::make_unique<MumpsEngine>();
     };
-    Rows rows;
+    SwitchedRows rows;
     SaddlePointSolver first(engine(), eager);
     std::vector<double> x = rows.side(1);
     rows.solve(first, x);
     unsigned seed = 1;
-    for (const std::array<bool, n_rows>& on :
-         {std::array<bool, n_rows>{true, true}, {true, true, false, true}, {false, true, false, true, true, true}}) {
+    for (const std::array<bool, kept_rows>& on :
+         {std::array<bool, kept_rows>{true, true}, {true, true, false, true}, {false, true, false, true, true, true}}) {
       rows.on = on;
       rows.fill();
       x = rows.side(++seed);
@@ -330,9 +330,9 @@ TEST(KeptFactor, GoesOnInAnotherProcessWithTheSameBits) {
     }
     std::filesystem::remove(file);
     EXPECT_EQ(second.base_number(), first.base_number());
-    for (const std::array<bool, n_rows>& on : {std::array<bool, n_rows>{true, true, false, true, true, true},
-                                               {true, false, false, false, true},
-                                               {false, false, true, true}}) {
+    for (const std::array<bool, kept_rows>& on : {std::array<bool, kept_rows>{true, true, false, true, true, true},
+                                                  {true, false, false, false, true},
+                                                  {false, false, true, true}}) {
       rows.on = on;
       rows.fill();
       std::vector<double> one = rows.side(++seed), other = one;
@@ -368,7 +368,7 @@ TEST(KeptFactor, TakesOverTheCareOfFactors) {
 // Columns of the inverse, many at once, by a factor that is exact and by one in single precision: those of the dense inverse,
 // also of unknowns that their row alone decides, whatever else is in the same column.
 TEST(KeptFactor, GivesTheColumnsOfTheInverse) {
-  Rows rows;
+  SwitchedRows rows;
   rows.on = {true, false, true, false, false, true};
   rows.fill();
   const Eigen::MatrixXd inverse = dense(rows.matrix).inverse();

@@ -16,7 +16,7 @@ using test::Chain;
 using test::dense;
 using test::entries;
 using test::SaddlePoint;
-constexpr MumpsOptions::Use always = MumpsOptions::Use::always;
+constexpr MumpsOptions::Use always_used = MumpsOptions::Use::always;
 
 // Single precision carries forces and lengths far outside its own range.
 TEST(MumpsUnits, MayBeFarOutsideTheRangeOfSinglePrecision) {
@@ -26,7 +26,7 @@ TEST(MumpsUnits, MayBeFarOutsideTheRangeOfSinglePrecision) {
   for (std::int64_t row = system.chain.numbering.of_patch(0); row < system.matrix.size(); ++row)
     for (std::int64_t k = system.matrix.rows()[row]; k < system.matrix.rows()[row + 1]; ++k) values[k] *= 1e-90;
   system.matrix.restore(values);
-  MumpsEngine engine({.single_precision = always});
+  MumpsEngine engine({.single_precision = always_used});
   engine.analyse(system.matrix);
   EXPECT_EQ(engine.factorise(system.matrix).doubt, "");
   Eigen::VectorXd b = 1e60 * Eigen::VectorXd::Random(system.matrix.size()), x = b;
@@ -57,7 +57,7 @@ TEST(MumpsUnits, MayMakeCouplingsFarLargerThanStiffnesses) {
       expected[row] /= factor;
     }
     system.matrix.restore(values);
-    MumpsEngine engine({.single_precision = single ? always : MumpsOptions{}.single_precision});
+    MumpsEngine engine({.single_precision = single ? always_used : MumpsOptions{}.single_precision});
     engine.analyse(system.matrix);
     const Factorisation found = engine.factorise(system.matrix);
     EXPECT_TRUE(found.null_pivots.empty());
@@ -96,7 +96,7 @@ TEST(MumpsUnits, AreNotToldByOneWeakSpring) {
       for (const Coupling& c : couplings)
         matrix.add(std::vector<std::int64_t>{chain.numbering.of_patch(c.a - n), chain.numbering.of(c.b, 0)},
                    std::vector<double>{0, c.b == reference ? -1.0 : 1.0, 0});
-      MumpsEngine engine({.single_precision = single ? always : MumpsOptions{}.single_precision});
+      MumpsEngine engine({.single_precision = single ? always_used : MumpsOptions{}.single_precision});
       engine.analyse(matrix);
       const Factorisation found = engine.factorise(matrix);
       EXPECT_TRUE(found.null_pivots.empty());

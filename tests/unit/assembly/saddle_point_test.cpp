@@ -17,34 +17,34 @@ using test::Chain;
 using test::columns;
 using test::dense;
 
-constexpr int n_nodes = 60, n_rows = 8;
+constexpr int chain_nodes = 60, chain_rows = 8;
 
 /// A chain held at its first node, with rows of multipliers that are on (coefficients, zero diagonal) or off (diagonal alone).
 struct Sequence {
   explicit Sequence(bool held_end = true)
-      : chain(n_nodes, n_rows, free(held_end)), matrix(chain.numbering, chain.cliques, couplings()) {
+      : chain(chain_nodes, chain_rows, free(held_end)), matrix(chain.numbering, chain.cliques, couplings()) {
     fill();
   }
   static std::vector<std::uint8_t> free(bool held) {
-    std::vector<std::uint8_t> flags(2 * n_nodes, 1);
+    std::vector<std::uint8_t> flags(2 * chain_nodes, 1);
     if (held) flags[0] = flags[1] = 0;
     return flags;
   }
   static std::vector<Coupling> couplings() {
     std::vector<Coupling> all;
-    for (int r = 0; r < n_rows; ++r)
-      for (int k = 0; k < 3; ++k) all.push_back({n_nodes + r, 3 + 7 * r + 2 * k});
+    for (int r = 0; r < chain_rows; ++r)
+      for (int k = 0; k < 3; ++k) all.push_back({chain_nodes + r, 3 + 7 * r + 2 * k});
     return all;
   }
   static std::vector<Coupling> more_couplings() {
     std::vector<Coupling> all = couplings();
-    for (int r = 0; r < n_rows; ++r) all.push_back({n_nodes + r, 40 + r});
+    for (int r = 0; r < chain_rows; ++r) all.push_back({chain_nodes + r, 40 + r});
     return all;
   }
   void fill() {
     matrix.set_zero();
     test::add_springs(matrix, chain);
-    for (int r = 0; r < n_rows; ++r) {
+    for (int r = 0; r < chain_rows; ++r) {
       if (!on[r]) {
         matrix.add_diagonal(chain.numbering.of_patch(r), off);
         continue;
@@ -55,7 +55,7 @@ struct Sequence {
       }
     }
   }
-  std::int64_t first_multiplier() const { return chain.numbering.first[n_nodes]; }
+  std::int64_t first_multiplier() const { return chain.numbering.first[chain_nodes]; }
   /// How far the solver is from dense LU, of the largest entry.
   double error(SaddlePointSolver& solver, SolutionReport& report) {
     Eigen::VectorXd b = Eigen::VectorXd::Random(matrix.size()), x = b;
@@ -65,7 +65,7 @@ struct Sequence {
   }
   Chain chain;
   SparseMatrix matrix;
-  std::array<bool, n_rows> on{};
+  std::array<bool, chain_rows> on{};
   double drift = 0;
   double unit = 1;  ///< of coefficients of rows that are on
   double off = 1;   ///< diagonal of rows that are off
@@ -188,9 +188,9 @@ TEST(SaddlePointSolver, GivesColumnsOfTheInverse) {
     system.error(solver, report);
     EXPECT_EQ(report.factorised, round == 0);
     SparseSides sides;
-    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(system.matrix.size(), 4 + n_rows);
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(system.matrix.size(), 4 + chain_rows);
     for (Eigen::Index c = 0; c < right.cols(); ++c, sides.end_side()) {
-      if (c < n_rows)
+      if (c < chain_rows)
         right(system.first_multiplier() + c, c) = 1;
       else
         for (int k = 0; k < 3; ++k) right(static_cast<Eigen::Index>(random() % system.matrix.size()), c) = k - 0.5;
@@ -199,7 +199,7 @@ TEST(SaddlePointSolver, GivesColumnsOfTheInverse) {
     }
     const Eigen::MatrixXd expected = dense(system.matrix).fullPivLu().solve(right);
     std::vector<float> found;
-    EXPECT_EQ(columns(solver, system.matrix, sides, found).columns, 4 + n_rows);
+    EXPECT_EQ(columns(solver, system.matrix, sides, found).columns, 4 + chain_rows);
     ASSERT_EQ(found.size(), static_cast<std::size_t>(expected.size()));
     const Eigen::MatrixXd difference =
         Eigen::Map<const Eigen::MatrixXf>(found.data(), expected.rows(), expected.cols()).cast<double>() - expected;
@@ -255,7 +255,7 @@ TEST(SaddlePointSolver, FactorisesWhenTheStiffnessChanges) {
 // A chain that its rows alone hold: once they are off, the kept factor must not hide that it floats.
 TEST(SaddlePointSolver, FindsThatABodyCameLoose) {
   Sequence system(false);
-  for (int r = 0; r < n_rows; ++r) system.on[r] = true;
+  for (int r = 0; r < chain_rows; ++r) system.on[r] = true;
   system.fill();
   SaddlePointSolver solver = eager();
   SolutionReport report;
@@ -290,7 +290,7 @@ TEST(SaddlePointSolver, FindsALooseBodyThatNothingPulls) {
 TEST(SaddlePointSolver, NeedsNoExactFactor) {
   for (const MumpsOptions::Use low_rank : {MumpsOptions::Use::never, MumpsOptions::Use::always}) {
     Sequence system(false);
-    for (int r = 0; r < n_rows; ++r) system.on[r] = true;
+    for (int r = 0; r < chain_rows; ++r) system.on[r] = true;
     system.fill();
     SaddlePointSolver solver = eager(std::make_unique<MumpsEngine>(
         MumpsOptions{.single_precision = MumpsOptions::Use::always, .low_rank = low_rank, .low_rank_threshold = 1e-4}));
@@ -299,7 +299,7 @@ TEST(SaddlePointSolver, NeedsNoExactFactor) {
     EXPECT_TRUE(report.factorisation.single_precision);
     std::mt19937 random(3);
     for (int round = 0; round < 20; ++round) {
-      for (int r = 2; r < n_rows; ++r) system.on[r] = random() % 2;
+      for (int r = 2; r < chain_rows; ++r) system.on[r] = random() % 2;
       system.drift = 0.01 * round;
       system.fill();
       EXPECT_LE(system.error(solver, report), 1e-11) << "round " << round;
@@ -320,7 +320,7 @@ TEST(SaddlePointSolver, NeedsNoExactFactor) {
 TEST(SaddlePointSolver, AsksTheMatrixWhatABlurredFactorHides) {
   for (const double share : {1e-4, 1e-3, 1e-2}) {
     Sequence system(false);
-    for (int r = 0; r < n_rows; ++r) system.on[r] = true;
+    for (int r = 0; r < chain_rows; ++r) system.on[r] = true;
     system.fill();
     SaddlePointSolver solver =
         eager(std::make_unique<test::BlurredEngine>(share, [&](Factorisation& found) { found.error = 30 * share; }));
@@ -328,7 +328,7 @@ TEST(SaddlePointSolver, AsksTheMatrixWhatABlurredFactorHides) {
     EXPECT_LE(system.error(solver, report), 1e-11);
     std::mt19937 random(3);
     for (int round = 0; round < 20; ++round) {
-      for (int r = 2; r < n_rows; ++r) system.on[r] = random() % 2;
+      for (int r = 2; r < chain_rows; ++r) system.on[r] = random() % 2;
       system.fill();
       EXPECT_LE(system.error(solver, report), 1e-11) << "round " << round;
       EXPECT_FALSE(report.factorised) << "share " << share << ", round " << round;
@@ -392,7 +392,8 @@ TEST(SaddlePointSolver, TakesCouplesOfAnyVertices) {
   SolutionReport report;
   system.error(solver, report);
   std::vector<Coupling> couplings = Sequence::couplings();
-  for (const Coupling& c : {Coupling{n_nodes, n_nodes + 1}, Coupling{n_nodes + 1, n_nodes + 2}, Coupling{2, 50}})
+  for (const Coupling& c :
+       {Coupling{chain_nodes, chain_nodes + 1}, Coupling{chain_nodes + 1, chain_nodes + 2}, Coupling{2, 50}})
     couplings.push_back(c);
   system.matrix = SparseMatrix(system.chain.numbering, system.chain.cliques, couplings);
   const auto patch = [&](int p) { return system.chain.numbering.of_patch(p); };

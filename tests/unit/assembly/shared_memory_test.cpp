@@ -3,16 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <iterator>
 #include <new>
+
+#include "open_files.hpp"
 
 namespace lacon {
 namespace {
-
-std::ptrdiff_t open_files() {
-  return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), std::filesystem::directory_iterator());
-}
 
 TEST(SharedMemory, IsSeenByWhoeverOpensIt) {
   const SharedMemory memory(3 * sizeof(double)), same = SharedMemory::open(memory.path());

@@ -24,7 +24,7 @@ double asymmetry(const std::vector<double>& matrix, std::size_t n) {
 }
 
 /// A slave skin over a master skin, all cells of a skin of one kind, and what vary_gap() says of it.
-struct Skins {
+struct VariedSkins {
   int dimension;
   CellType slave_type, master_type;
   bool axis, current, smooth;
@@ -149,7 +149,7 @@ double largest_of(const std::vector<double>& values) {
 
 /// Where both bodies move together G is what it was: forces and moments balance, and a rotation W x turns the forces, H W x = W
 /// dG.
-void expect_rigid_motions_change_nothing(const Skins& skins, const Skins::Sum& at, const std::string& what) {
+void expect_rigid_motions_change_nothing(const VariedSkins& skins, const VariedSkins::Sum& at, const std::string& what) {
   const std::size_t n = skins.size();
   const double largest = largest_of(at.gradient), largest_second = largest_of(at.hessian);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -173,9 +173,9 @@ void expect_rigid_motions_change_nothing(const Skins& skins, const Skins::Sum& a
 }
 
 /// A slave cell over a chain of masters, in the plane: a part of a large arc over a wavy line, any nodes moved at random.
-struct InPlane : Skins {
+struct InPlane : VariedSkins {
   InPlane(CellType slave, CellType master, bool on_axis, bool actual, bool smoothing, unsigned seed)
-      : Skins{2, slave, master, on_axis, actual, smoothing, {}, {}, {}, {}, {}} {
+      : VariedSkins{2, slave, master, on_axis, actual, smoothing, {}, {}, {}, {}, {}} {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(-0.04, 0.04);
     const auto chain = [&](CellType type, int n, double from, double to, double height, auto& cells) {
@@ -214,7 +214,7 @@ TEST(GapVariation, DerivativesInThePlaneAreThoseOfDifferences) {
             skins.fading = seed % 3 == 1 ? 1 : 0;      // the cover ends within such a band
             if (seed % 2 == 0) skins.steep_angle = 3;  // most couples count by a share
             const std::string what = "seed " + std::to_string(seed);
-            const Skins::Sum at = skins.evaluate(true);
+            const VariedSkins::Sum at = skins.evaluate(true);
             const double largest = largest_of(at.gradient), largest_second = largest_of(at.hessian);
             EXPECT_GT(largest, 0.1);
             EXPECT_GT(largest_second, 0.1);
@@ -224,9 +224,9 @@ TEST(GapVariation, DerivativesInThePlaneAreThoseOfDifferences) {
               double& x = skins.coordinates[i];
               const double middle = x;
               x = middle + step;
-              const Skins::Sum ahead = skins.evaluate(false);
+              const VariedSkins::Sum ahead = skins.evaluate(false);
               x = middle - step;
-              const Skins::Sum behind = skins.evaluate(false);
+              const VariedSkins::Sum behind = skins.evaluate(false);
               x = middle;
               EXPECT_NEAR(at.gradient[i], (ahead.gap - behind.gap) / (2 * step), 1e-7 * largest) << i << ' ' << what;
               for (std::size_t j = 0; j < skins.size(); ++j)
@@ -238,8 +238,8 @@ TEST(GapVariation, DerivativesInThePlaneAreThoseOfDifferences) {
 }
 
 /// A straight slave cell over a master that ends `beyond` behind it, with a gap that grows to 0.2 at that end.
-Skins aligned_ends(CellType slave, CellType master, double beyond, double fading) {
-  Skins skins{2, slave, master, false, false, false, {}, {}, {}, {}, {}};
+VariedSkins aligned_ends(CellType slave, CellType master, double beyond, double fading) {
+  VariedSkins skins{2, slave, master, false, false, false, {}, {}, {}, {}, {}};
   skins.fading = fading;
   skins.coordinates = {0, 0.1, 0, 1, 0.2, 0, 1 + beyond, 0, 0, -0.5, 0, 0};
   skins.slaves = {{0, 1}};
@@ -266,7 +266,7 @@ TEST(GapVariation, ForcesDoNotJumpWhereTheEndsOfBothSkinsAreAligned) {
       const auto at = [&](double beyond, double fading) {
         return aligned_ends(slave, master, aligned + beyond, fading).evaluate(false);
       };
-      const auto jump = [](const Skins::Sum& a, const Skins::Sum& b) {
+      const auto jump = [](const VariedSkins::Sum& a, const VariedSkins::Sum& b) {
         double largest = 0;
         for (std::size_t i = 0; i < a.gradient.size(); ++i)
           largest = std::max(largest, std::abs(a.gradient[i] - b.gradient[i]));
@@ -286,10 +286,10 @@ TEST(GapVariation, ForcesDoNotJumpWhereTheEndsOfBothSkinsAreAligned) {
 }
 
 /// A slave cell, with its neighbour, over masters that reach beyond it on some sides only; in space.
-struct InSpace : Skins {
+struct InSpace : VariedSkins {
   /// @param bend how far nodes are moved at random, and how much the surfaces are curved
   InSpace(CellType slave, CellType master, bool actual, bool smoothing, double bend, unsigned seed)
-      : Skins{3, slave, master, false, actual, smoothing, {}, {}, {}, {}, {}} {
+      : VariedSkins{3, slave, master, false, actual, smoothing, {}, {}, {}, {}, {}} {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(-1, 1);
     const auto skin = [&](CellType type, double x0, double y0, double dx, double dy, int nx, bool up, double z, auto& cells) {
@@ -341,7 +341,7 @@ TEST(GapVariation, DerivativesInSpaceAreThoseOfDifferences) {
       if (seed % 2 == 0) skins.steep_angle = 2;                               // most couples count by a share
       for (std::size_t c = 0; seed % 5 < 2 && c < skins.masters.size(); ++c)  // their border above goes on
         skins.mirrored.push_back(catalog::cell(master).family == Family::QUAD ? 1U << 2 : c % 2 == 1 ? 1U << 1 : 0);
-      const Skins::Sum at = skins.evaluate(true);
+      const VariedSkins::Sum at = skins.evaluate(true);
       const std::size_t n = at.gradient.size();
       const double largest = largest_of(at.gradient), largest_second = largest_of(at.hessian);
       EXPECT_GT(largest, 0.02);
@@ -355,11 +355,12 @@ TEST(GapVariation, DerivativesInSpaceAreThoseOfDifferences) {
         const std::vector<double> middle = skins.coordinates;
         const auto moved = [&](double by) {
           for (std::size_t i = 0; i < n; ++i) skins.coordinates[i] = middle[i] + by * along[i];
-          const Skins::Sum sum = skins.evaluate(false);
+          const VariedSkins::Sum sum = skins.evaluate(false);
           skins.coordinates = middle;
           return sum;
         };
-        const Skins::Sum ahead = moved(step), behind = moved(-step), far_ahead = moved(4 * step), far_behind = moved(-4 * step);
+        const VariedSkins::Sum ahead = moved(step), behind = moved(-step), far_ahead = moved(4 * step),
+                               far_behind = moved(-4 * step);
         const std::string what = std::string(catalog::cell(slave).name) + " over " + std::string(catalog::cell(master).name) +
                                  (smooth ? ", smooth, " : ", ") + std::to_string(seed);
         // where a corner passes an edge on the way, or two lines are nearly one, differences say nothing: they are not the
@@ -404,8 +405,8 @@ InSpace flat_skins(CellType slave, CellType master, bool smooth, unsigned seed) 
 }
 
 /// Derivatives against differences, along a direction that leaves all planes.
-void expect_derivatives_of_differences(Skins skins, const std::string& what) {
-  const Skins::Sum at = skins.evaluate(true), first = skins.evaluate(false);
+void expect_derivatives_of_differences(VariedSkins skins, const std::string& what) {
+  const VariedSkins::Sum at = skins.evaluate(true), first = skins.evaluate(false);
   const std::size_t n = at.gradient.size();
   const double largest = largest_of(at.gradient), largest_second = largest_of(at.hessian);
   EXPECT_GT(largest, 0.02) << what;
@@ -421,7 +422,7 @@ void expect_derivatives_of_differences(Skins skins, const std::string& what) {
     return skins.evaluate(false);
   };
   constexpr double step = 2e-7;
-  const Skins::Sum ahead = moved(step), behind = moved(-step);
+  const VariedSkins::Sum ahead = moved(step), behind = moved(-step);
   if (skins.slave_type != CellType::TRIA3 || skins.master_type != CellType::TRIA3) {
     EXPECT_EQ(ahead.in_one, 0U) << what;
   }
@@ -448,7 +449,7 @@ TEST(GapVariation, FlatSkinsHaveTheirDerivativesInOnePiece) {
       const InSpace skins = flat_skins(slave, master, smooth, seed);
       const std::string what = std::string(catalog::cell(slave).name) + " over " + std::string(catalog::cell(master).name) +
                                (smooth ? ", smooth, " : ", ") + std::to_string(seed);
-      const Skins::Sum at = skins.evaluate(true);
+      const VariedSkins::Sum at = skins.evaluate(true);
       EXPECT_EQ(at.traced, 0U) << what;
       EXPECT_GT(at.in_one, 3U) << what;
       expect_derivatives_of_differences(skins, what);
@@ -493,7 +494,7 @@ TEST(GapVariation, FlatSlavesNeedTrianglesWhereTheCoverEndsOrTheGapJumps) {
         node = at->second;
       }
     }
-    const Skins::Sum at = jumps.evaluate(false);
+    const VariedSkins::Sum at = jumps.evaluate(false);
     EXPECT_GT(at.in_one, 0U) << what;
     EXPECT_GT(at.traced, 0U) << what;
     expect_derivatives_of_differences(jumps, what + ", a jump");
@@ -508,7 +509,7 @@ TEST(GapVariation, ForcesDoNotJumpWhereEdgesBecomeStraight) {
     for (const CellType master : {CellType::QUAD4, CellType::TRIA6, CellType::QUAD8, CellType::QUAD9}) {
       ++seed;
       const auto bent = [&](double bend) { return InSpace(slave, master, false, false, bend, seed).evaluate(false); };
-      const Skins::Sum straight = bent(1e-7), curved = bent(1e-5);
+      const VariedSkins::Sum straight = bent(1e-7), curved = bent(1e-5);
       EXPECT_GT(largest_of(straight.gradient), 0.1);
       for (std::size_t i = 0; i < straight.gradient.size(); ++i)
         EXPECT_NEAR(straight.gradient[i], curved.gradient[i], 20 * 1e-5)
@@ -521,16 +522,16 @@ TEST(GapVariation, ForcesDoNotJumpWhereEdgesBecomeStraight) {
 TEST(GapVariation, ForcesDoNotJumpWhereLinesOfTwoMastersCoincide) {
   for (const CellType kind : {CellType::QUAD8, CellType::QUAD9}) {
     const auto skins = [&](double shake) {
-      Skins skins{.dimension = 3,
-                  .slave_type = CellType::QUAD4,
-                  .master_type = kind,
-                  .axis = false,
-                  .current = true,
-                  .smooth = false,
-                  .coordinates = {},
-                  .initial = {},
-                  .slaves = {},
-                  .masters = {}};
+      VariedSkins skins{.dimension = 3,
+                        .slave_type = CellType::QUAD4,
+                        .master_type = kind,
+                        .axis = false,
+                        .current = true,
+                        .smooth = false,
+                        .coordinates = {},
+                        .initial = {},
+                        .slaves = {},
+                        .masters = {}};
       std::mt19937 random(9);
       std::uniform_real_distribution<double> uniform(-shake, shake);
       const auto add = [&](double x, double y, double z) {
@@ -555,10 +556,10 @@ TEST(GapVariation, ForcesDoNotJumpWhereLinesOfTwoMastersCoincide) {
       skins.initial = skins.coordinates;
       return skins;
     };
-    const Skins::Sum at = skins(0).evaluate(false);
+    const VariedSkins::Sum at = skins(0).evaluate(false);
     EXPECT_EQ(at.in_one, 0U);
     for (const double shake : {1e-13, 1e-10, 1e-7}) {
-      const Skins::Sum beside = skins(shake).evaluate(false);
+      const VariedSkins::Sum beside = skins(shake).evaluate(false);
       for (std::size_t i = 0; i < at.gradient.size(); ++i)
         EXPECT_NEAR(at.gradient[i], beside.gradient[i], 1e-10 + 20 * shake) << catalog::cell(kind).name << shake << ' ' << i;
     }

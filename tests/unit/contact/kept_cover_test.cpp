@@ -11,7 +11,7 @@ namespace lacon {
 namespace {
 
 /// A slave cell over flat masters that are inclined to it, each a patch of its own.
-struct Scene {
+struct KeptScene {
   Mesh mesh;
   Model model;
   Contact contact;
@@ -40,8 +40,8 @@ struct Scene {
 
 /// In the plane: a bent slave that looks down, from x = 0 to 1, over masters from -0.2 to `end`, the last one as steep as
 /// asked.
-Scene in_plane(double end, double slope = 0.2) {
-  Scene scene;
+KeptScene in_plane(double end, double slope = 0.2) {
+  KeptScene scene;
   scene.mesh.dimension = 2;
   const auto a = scene.node(1, 0.1, 0), b = scene.node(0, 0.1, 0), c = scene.node(0.5, 0.13, 0);
   scene.slave(CellType::SEG3, {b, a, c}, 14);
@@ -59,8 +59,8 @@ Scene in_plane(double end, double slope = 0.2) {
 }
 
 /// In space: a warped slave that looks down, over two masters side by side, flat but for `warp`, from x = -0.2 to `end`.
-Scene in_space(double end, bool quadratic, double warp = 0) {
-  Scene scene;
+KeptScene in_space(double end, bool quadratic, double warp = 0) {
+  KeptScene scene;
   scene.mesh.dimension = 3;
   const auto a = scene.node(0, 0, 0.1), b = scene.node(0, 1, 0.1), c = scene.node(1, 1, 0.14), d = scene.node(1, 0, 0.1);
   scene.slave(CellType::QUAD4, {a, b, c, d}, 0);
@@ -91,7 +91,7 @@ struct Derivatives {
   std::vector<double> of_gap, of_gradient;
 };
 
-Derivatives derivatives(const Scene& scene, bool kept, bool sees_walls = true) {
+Derivatives derivatives(const KeptScene& scene, bool kept, bool sees_walls = true) {
   const auto d = static_cast<std::size_t>(scene.mesh.dimension), n = d * scene.mesh.n_nodes();
   Registry registry;
   ContactGeometry geometry(scene.mesh, scene.model, scene.contact, registry);
@@ -122,11 +122,11 @@ double largest(const std::vector<double>& values) {
 }
 
 /// Scenes whose master ends on the slave, or behind it.
-std::vector<Scene> scenes(double end) { return {in_plane(end), in_space(end, false), in_space(end, true)}; }
+std::vector<KeptScene> scenes(double end) { return {in_plane(end), in_space(end, false), in_space(end, true)}; }
 
 // Where a flat master grows along itself no gap changes, and nothing but the cover does.
 TEST(KeptCover, TheEndOfAMasterThatMovesAlongTheMasterDoesNoWork) {
-  for (const Scene& scene : scenes(0.6)) {
+  for (const KeptScene& scene : scenes(0.6)) {
     const auto d = static_cast<std::size_t>(scene.mesh.dimension);
     const auto work = [&](bool kept) {
       const Derivatives of = derivatives(scene, kept);
@@ -144,7 +144,7 @@ TEST(KeptCover, TheEndOfAMasterThatMovesAlongTheMasterDoesNoWork) {
 
 // Rigid motions of all leave the gap as it is, wherever the cover ends: forces and moments balance, and turn with the bodies.
 TEST(KeptCover, LeavesForcesBalanced) {
-  for (const Scene& scene : scenes(0.6)) {
+  for (const KeptScene& scene : scenes(0.6)) {
     const auto d = static_cast<std::size_t>(scene.mesh.dimension), n = d * scene.mesh.n_nodes();
     const Derivatives of = derivatives(scene, true);
     const double scale = largest(of.gradient), second = largest(of.hessian);
@@ -177,7 +177,7 @@ TEST(KeptCover, LeavesForcesBalanced) {
 }
 
 TEST(KeptCover, IsNothingElseWhereTheMasterCoversTheWholePatch) {
-  for (const Scene& scene : scenes(1.3)) {
+  for (const KeptScene& scene : scenes(1.3)) {
     const Derivatives moves = derivatives(scene, false), kept = derivatives(scene, true);
     EXPECT_EQ(moves.gap, kept.gap);
     EXPECT_EQ(moves.gradient, kept.gradient);
@@ -188,7 +188,7 @@ TEST(KeptCover, IsNothingElseWhereTheMasterCoversTheWholePatch) {
 // The gap itself, and what it does by normals that turn and images that move, do not hang on it: moved along the slave's
 // normal alone the end of the master stays where it is on a straight slave.
 TEST(KeptCover, ChangesNoGapAndNoForceAlongTheNormal) {
-  Scene scene = in_plane(0.6);
+  KeptScene scene = in_plane(0.6);
   scene.mesh.coordinates[3 * 2 + 1] = 0.1;  // its middle node
   const Derivatives moves = derivatives(scene, false), kept = derivatives(scene, true);
   EXPECT_EQ(moves.gap, kept.gap);
@@ -199,7 +199,7 @@ TEST(KeptCover, ChangesNoGapAndNoForceAlongTheNormal) {
 }
 
 // Gaps and forces of a kept cover against their differences: what the symmetric part lacks is what the ends that move add.
-void expect_differences(Scene& scene) {
+void expect_differences(KeptScene& scene) {
   const auto d = static_cast<std::size_t>(scene.mesh.dimension), n = d * scene.mesh.n_nodes();
   const Derivatives of = derivatives(scene, true);
   double lacking = 0;
@@ -229,14 +229,14 @@ TEST(KeptCover, IsDifferentiatedWhollyByItsEndsAsWell) {
     SCOPED_TRACE(smoothing ? "nodal normals" : "normals of cells");
     for (const double slope : {0.2, 3.0, 30.0}) {  // the steepest has a share that turns with it
       SCOPED_TRACE(slope);
-      Scene scene = in_plane(slope > 1 ? 0.32 : 0.6, slope);
+      KeptScene scene = in_plane(slope > 1 ? 0.32 : 0.6, slope);
       scene.contact.smoothing = smoothing;
       expect_differences(scene);
     }
     for (const bool quadratic : {false, true}) {
       SCOPED_TRACE(quadratic ? "QUAD8" : "QUAD4");
       // warped: differences would go from the rule of flat masters to that of others
-      Scene scene = in_space(0.6, quadratic, quadratic ? 0 : 0.01);
+      KeptScene scene = in_space(0.6, quadratic, quadratic ? 0 : 0.01);
       scene.contact.smoothing = smoothing;
       expect_differences(scene);
     }
@@ -247,7 +247,7 @@ TEST(KeptCover, IsDifferentiatedWhollyByItsEndsAsWell) {
 TEST(KeptCover, EndsWhereAWallBegins) {
   for (const bool quadratic : {false, true}) {
     const Derivatives alone = derivatives(in_space(0.6, quadratic), true);
-    Scene scene = in_space(0.6, quadratic);
+    KeptScene scene = in_space(0.6, quadratic);
     std::vector<std::int32_t> foot;
     for (const double y : {-0.2, 0.45, 1.2}) foot.push_back(scene.node(0.7, y, -0.5));
     for (std::size_t i = 0; i < 2; ++i) {
@@ -262,8 +262,8 @@ TEST(KeptCover, EndsWhereAWallBegins) {
 }
 
 /// Two cells of a wall, at 85.6 and 89.2 degrees, the node between them below x = 1, where the slave ends.
-Scene beside_a_wall(double between) {
-  Scene scene;
+KeptScene beside_a_wall(double between) {
+  KeptScene scene;
   scene.mesh.dimension = 2;
   const auto a = scene.node(1, 0.1, 0), b = scene.node(0, 0.1, 0);
   scene.slave(CellType::SEG2, {b, a}, 13);

@@ -292,12 +292,6 @@ double yield(const Numbers& curve, double p) {
   return value;
 }
 
-/// Solve f(t) = 0 for an increasing f.
-double root(double low, double high, const std::function<double(double)>& f) {
-  for (int i = 0; i < 200; ++i) (f((low + high) / 2) > 0 ? high : low) = (low + high) / 2;
-  return (low + high) / 2;
-}
-
 /// The path of a stress with one sense: von Mises stress q, plastic strain p. A total "strain" t has q = stiffness (t - p).
 struct OneSense {
   double stiffness;

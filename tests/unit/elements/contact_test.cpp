@@ -12,16 +12,12 @@
 #include "lacon/elements/contact_system.hpp"
 #include "lacon/elements/reference.hpp"
 #include "lacon/elements/registry.hpp"
+#include "solids.hpp"
 
 namespace {
 
 using lacon::CellType;
 using Numbers = std::vector<double>;
-
-constexpr double eps = 2.3e-16;
-constexpr double garbage = 7e7;  // what outputs hold before they are computed
-
-std::size_t z(int i) { return static_cast<std::size_t>(i); }
 
 /// The kernel of the skins of a modelisation.
 const lacon_kernel& contact_kernel(int dimension, bool axis) {

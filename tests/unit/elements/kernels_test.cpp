@@ -18,16 +18,6 @@ namespace {
 using lacon::CellType;
 using Numbers = std::vector<double>;
 
-constexpr double eps = 2.3e-16;
-constexpr double garbage = 7e7;  // what outputs hold before a kernel runs
-
-lacon::Registry& registry() {
-  static lacon::Registry all;
-  return all;
-}
-
-std::size_t z(int i) { return static_cast<std::size_t>(i); }
-
 /// Values of elements, one vector each, in blocks of lanes; the last block is filled up by repeating the last element.
 Numbers in_lanes(const std::vector<Numbers>& values) {
   const std::size_t n = values.size(), size = values.front().size(), blocks = (n + LACON_LANES - 1) / LACON_LANES;

@@ -217,12 +217,6 @@ TEST(ThermalStrain, AddsUpFromStateToState) {
 
 // ---------------------------------------------------------------------------------------------------- uniaxial tension
 
-/// Solve f(t) = 0 for an increasing f.
-double root(double low, double high, const std::function<double(double)>& f) {
-  for (int i = 0; i < 100; ++i) (f((low + high) / 2) > 0 ? high : low) = (low + high) / 2;
-  return (low + high) / 2;
-}
-
 /// Tension to the stretch 1.5 in steps, free across. @return true stress along
 double tension(const std::string& option, int steps, State& state) {
   const ElementRow& row = *registry().find_element("3D/HEXA8");

@@ -13,7 +13,7 @@ using lacon::Error;
 using lacon::Function;
 using testing::HasSubstr;
 
-constexpr double young = 2000;
+constexpr double given_young = 2000;
 
 /// The hardening curve of a material with E and these parameters of one more keyword.
 std::vector<double> curve(const std::string& keyword, const std::map<std::string, std::variant<double, std::string>>& values,
@@ -21,7 +21,7 @@ std::vector<double> curve(const std::string& keyword, const std::map<std::string
   lacon::MaterialField field;
   field.material = {0};
   lacon::Material material;
-  material.laws["ELAS"]["E"] = young;
+  material.laws["ELAS"]["E"] = given_young;
   for (const auto& [name, value] : values) material.laws[keyword][name] = value;
   const lacon::MaterialTable table(field, {material}, {"STEEL"}, {{"function_1", function}});
   return lacon::hardening_curve(table, 0, keyword, "D_PLAN/QUAD4");
@@ -54,7 +54,7 @@ TEST(HardeningCurve, OfASlopeIsSeries) {
   ASSERT_EQ(found.size(), 3U);
   EXPECT_EQ(found[0], 0);
   EXPECT_EQ(found[1], 10);
-  EXPECT_NEAR(1 / (1 / young + 1 / found[2]), 500, 1e-10);
+  EXPECT_NEAR(1 / (1 / given_young + 1 / found[2]), 500, 1e-10);
 }
 
 // Plastic strains are what the elastic ones leave of the points' strains; slopes go from point to point.
@@ -63,7 +63,7 @@ TEST(HardeningCurve, OfATensionTestGoesThroughItsPoints) {
   const auto found = curve_of(test);
   ASSERT_EQ(found.size(), 9U);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(found[3 * i], test.x[i] - test.y[i] / young, 1e-15);
+    EXPECT_NEAR(found[3 * i], test.x[i] - test.y[i] / given_young, 1e-15);
     EXPECT_EQ(found[3 * i + 1], test.y[i]);
   }
   EXPECT_NEAR(found[2], 10 / 0.005, 1e-9);

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "lacon/catalog/elements.hpp"
+#include "solids.hpp"
 
 namespace {
 
@@ -17,8 +18,6 @@ using lacon::CellType;
 using lacon::Family;
 using lacon::Rule;
 using lacon::catalog::CellRow;
-
-constexpr double eps = 2.3e-16;
 
 struct NamedCell : testing::TestWithParam<int> {
   const CellRow& cell() const { return lacon::catalog::cells()[static_cast<std::size_t>(GetParam())]; }

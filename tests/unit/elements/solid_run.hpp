@@ -1,6 +1,7 @@
 #pragma once
 // One solid element under a behaviour, for tests of measures of strain and laws.
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "solids.hpp"
@@ -9,7 +10,6 @@ using Numbers = std::vector<double>;
 using lacon::catalog::ElementRow;
 
 constexpr double young = 200, poisson = 0.3, mu = young / (2 * (1 + poisson)), lambda = 2 * mu * poisson / (1 - 2 * poisson);
-constexpr double garbage = 7e7;                                         // what outputs hold before a kernel runs
 inline const Numbers linear_hardening = {0, 1, 20};                     // yield stress 1, slope 20
 inline const Numbers pieces = {0, 1, 40, 0.01, 1.4, 10, 0.05, 1.8, 0};  // three straight pieces, the last one flat
 
@@ -109,4 +109,10 @@ inline Numbers shaken_displacement(std::size_t n, double size, unsigned seed) {
   Numbers u(n);
   for (double& value : u) value = number(random);
   return u;
+}
+
+/// Solve f(t) = 0 for an increasing f.
+inline double root(double low, double high, const std::function<double(double)>& f) {
+  for (int i = 0; i < 200; ++i) (f((low + high) / 2) > 0 ? high : low) = (low + high) / 2;
+  return (low + high) / 2;
 }

@@ -8,6 +8,9 @@
 #include "lacon/elements/reference.hpp"
 #include "lacon/elements/registry.hpp"
 
+constexpr double eps = 2.3e-16;
+constexpr double garbage = 7e7;  // what outputs hold before a kernel runs
+
 inline lacon::Registry& registry() {
   static lacon::Registry all;
   return all;

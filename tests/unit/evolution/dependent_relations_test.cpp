@@ -12,7 +12,7 @@
 namespace lacon {
 namespace {
 
-Eigen::MatrixXd dense(const std::vector<FreeRow>& rows, Eigen::Index n_unknowns) {
+Eigen::MatrixXd matrix_of(const std::vector<FreeRow>& rows, Eigen::Index n_unknowns) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(std::ssize(rows), n_unknowns);
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (std::size_t i = 0; i < rows[r].unknowns.size(); ++i)
@@ -22,7 +22,7 @@ Eigen::MatrixXd dense(const std::vector<FreeRow>& rows, Eigen::Index n_unknowns)
 
 /// As many as the rank lacks, each the sum of independent ones before it.
 void expect_dependent(const std::vector<FreeRow>& rows, Eigen::Index n_unknowns) {
-  const Eigen::MatrixXd matrix = dense(rows, n_unknowns);
+  const Eigen::MatrixXd matrix = matrix_of(rows, n_unknowns);
   const std::vector<DependentRelation> found = dependent_relations(rows);
   Eigen::FullPivLU<Eigen::MatrixXd> factors(matrix);
   factors.setThreshold(1e-9);
@@ -58,7 +58,7 @@ TEST(DependentRelations, AreAsManyAsTheRankLacks) {
     }
     for (std::int64_t s = 0, n = number(4); s < n && rows.size() > 2; ++s) {  // sums of some
       Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(n_unknowns);
-      const Eigen::MatrixXd matrix = dense(rows, n_unknowns);
+      const Eigen::MatrixXd matrix = matrix_of(rows, n_unknowns);
       for (int k = 0; k < 3; ++k) sum += value(random) * matrix.row(number(static_cast<int>(rows.size())));
       FreeRow& row = rows.emplace_back();
       for (std::int64_t u = 0; u < n_unknowns; ++u)

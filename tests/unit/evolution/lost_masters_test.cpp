@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "statuses.hpp"
+
 namespace lacon {
 namespace {
 
 using Statuses = std::vector<Status>;
 using Patches = std::vector<std::size_t>;
-constexpr Status A = Status::active, O = Status::open, U = Status::unpaired;
 
 TEST(LostMasters, AreTheSecondOnesOfAnInstant) {
   LostMasters lost;

@@ -7,11 +7,12 @@
 #include <random>
 #include <set>
 
+#include "statuses.hpp"
+
 namespace lacon {
 namespace {
 
 using Statuses = std::vector<Status>;
-constexpr Status A = Status::active, O = Status::open, U = Status::unpaired;
 
 /// Bodies that give way linearly: gap = start + flexibility pressure, for pressures and gaps that exclude each other.
 struct Convex {

@@ -15,7 +15,7 @@ using testing::DoubleEq;
 using testing::ElementsAre;
 
 /// Solves every step that is not longer than `longest`.
-struct Solver {
+struct Instants {
   double longest;
   double at = 0;
   int returns = 0;
@@ -42,7 +42,7 @@ struct Solver {
 };
 
 TEST(TimeStepping, SolvesEveryInstantOfTheList) {
-  Solver solver{.longest = 1};
+  Instants solver{.longest = 1};
   solver.run({.values = {0, 0.5, 1.5}});
   EXPECT_THAT(solver.solved, ElementsAre(0.5, 1.5));
   EXPECT_THAT(solver.asked, ElementsAre(true, true));
@@ -51,7 +51,7 @@ TEST(TimeStepping, SolvesEveryInstantOfTheList) {
 
 // A failing step is cut, its parts again where they fail; the instants that were asked for are met to the bit.
 TEST(TimeStepping, CutsWhatFailsAgainAndAgain) {
-  Solver solver{.longest = 0.25};
+  Instants solver{.longest = 0.25};
   solver.run({.values = {0, 1}, .action = {.cut = true, .cut_into = 2, .cut_levels = 3}});
   EXPECT_THAT(solver.solved, ElementsAre(DoubleEq(0.25), DoubleEq(0.5), DoubleEq(0.75), 1.0));
   EXPECT_THAT(solver.asked, ElementsAre(false, false, false, true));
@@ -59,19 +59,19 @@ TEST(TimeStepping, CutsWhatFailsAgainAndAgain) {
 }
 
 TEST(TimeStepping, GivesUpBelowTheLastLevel) {
-  Solver solver{.longest = 0.1};
+  Instants solver{.longest = 0.1};
   EXPECT_THROW(solver.run({.values = {0, 1}, .action = {.cut = true, .cut_into = 2, .cut_levels = 3}}), Error);
   EXPECT_TRUE(solver.solved.empty());
 }
 
 TEST(TimeStepping, GivesUpBelowTheSmallestStep) {
-  Solver solver{.longest = 0.1};
+  Instants solver{.longest = 0.1};
   EXPECT_THROW(solver.run({.values = {0, 1}, .action = {.cut = true, .cut_into = 2, .cut_levels = 9, .smallest = 0.3}}), Error);
   EXPECT_EQ(solver.returns, 1);
 }
 
 TEST(TimeStepping, DoesNotCutWhereTheUserDidNotAskForIt) {
-  Solver solver{.longest = 0.5};
+  Instants solver{.longest = 0.5};
   EXPECT_THROW(solver.run({.values = {0, 1}}), Error);
   EXPECT_EQ(solver.returns, 0);
 }
@@ -338,15 +338,15 @@ TEST(TimeStepping, ActsByTheEvent) {
 }
 
 /// METHODE='AUTO' from 0 to 16 by way of 1, every step solved in `iterations` if it is not longer than `longest`.
-Solver adapt(StepAdaptation adaptation, int iterations, double longest = 100) {
-  Solver solver{.longest = longest};
+Instants adapt(StepAdaptation adaptation, int iterations, double longest = 100) {
+  Instants solver{.longest = longest};
   solver.iterations = iterations;
   solver.run({.values = {0, 1, 16}, .action = {.cut = true, .cut_into = 2}, .events = {}, .adaptation = adaptation});
   return solver;
 }
 
 TEST(AdaptiveStepping, DoublesEasySteps) {
-  const Solver solver = adapt({.easy_steps = 1}, 5);
+  const Instants solver = adapt({.easy_steps = 1}, 5);
   EXPECT_THAT(solver.solved, ElementsAre(1.0, 3.0, 7.0, 15.0, 16.0));
   EXPECT_THAT(solver.asked, ElementsAre(true, false, false, false, true));
   EXPECT_THAT(adapt({.easy_steps = 2}, 5).solved, ElementsAre(1.0, 2.0, 4.0, 6.0, 10.0, 14.0, 16.0));
@@ -368,7 +368,7 @@ TEST(AdaptiveStepping, AimsAtANumberOfIterations) {
 
 /// The message that steps from 0 to 16 by way of 1 end with.
 std::string end_of(const StepAdaptation& adaptation, int iterations, std::size_t& solved) {
-  Solver solver{.longest = 100};
+  Instants solver{.longest = 100};
   solver.iterations = iterations;
   try {
     solver.run({.values = {0, 1, 16}, .action = {.cut = true, .cut_into = 2}, .events = {}, .adaptation = adaptation});
@@ -395,7 +395,7 @@ TEST(AdaptiveStepping, StepsThatShrinkEnd) {
 
 // A step that fails is cut, and the computation goes on with the shorter one until steps are easy again.
 TEST(AdaptiveStepping, GoesOnWithTheShorterStep) {
-  const Solver solver = adapt({.event = "AUCUN"}, 1, 0.6);
+  const Instants solver = adapt({.event = "AUCUN"}, 1, 0.6);
   EXPECT_EQ(solver.returns, 1);
   EXPECT_EQ(solver.solved.size(), 32u);
   EXPECT_DOUBLE_EQ(solver.solved.front(), 0.5);

@@ -11,7 +11,7 @@ namespace {
 using namespace lacon;
 using namespace lacon::test;
 
-std::vector<std::int64_t> counts(const Misfits& all) {
+std::vector<std::int64_t> numbers_of(const Misfits& all) {
   return {all.middles.count, all.diagonals.count, all.hanging.count, all.coincident.count};
 }
 const std::vector<std::int64_t> none{0, 0, 0, 0};
@@ -48,9 +48,9 @@ class Conforming : public testing::TestWithParam<CellType> {};
 // A block is whole, before its skin is cut and afterwards, however its cells are turned and its edges bent.
 TEST_P(Conforming, blocks_have_nothing_that_does_not_fit) {
   const Mesh mesh = block(GetParam(), 4, 3, 2);
-  EXPECT_EQ(counts(misfits(mesh, 2)), none);
+  EXPECT_EQ(numbers_of(misfits(mesh, 2)), none);
   EXPECT_EQ(open_facets(mesh, 2).size(), 14u);
-  EXPECT_EQ(counts(misfits(cut(mesh, {"AROUND"}), 2)), none);
+  EXPECT_EQ(numbers_of(misfits(cut(mesh, {"AROUND"}), 2)), none);
 }
 INSTANTIATE_TEST_SUITE_P(Cells, Conforming,
                          testing::Values(CellType::TRIA3, CellType::TRIA6, CellType::QUAD4, CellType::QUAD8, CellType::QUAD9),
@@ -62,7 +62,7 @@ TEST(Conformity, hexahedra_are_open_at_their_outside_alone) {
     for (int j = 0; j < 3; ++j)
       for (int k = 0; k < 3; ++k) all.hexa(i, j, k, 1, 1);
   EXPECT_EQ(open_facets(all.mesh, 3).size(), 54u);
-  EXPECT_EQ(counts(misfits(all.mesh, 3)), none);
+  EXPECT_EQ(numbers_of(misfits(all.mesh, 3)), none);
   std::vector<char> counting(27, 1);
   counting[13] = 0;  // the cell in the middle is no part of the model
   EXPECT_EQ(open_facets(all.mesh, 3, counting).size(), 60u);
@@ -89,16 +89,16 @@ Mesh narrow_on_wide(int parts, bool ends_shared, double lift = 0) {
 TEST(Conformity, vertices_hang_where_others_lead_from_end_to_end) {
   for (const int parts : {2, 3, 5}) {
     const Misfits all = misfits(narrow_on_wide(parts, true), 2);
-    EXPECT_EQ(counts(all), (std::vector<std::int64_t>{0, 0, 2, 0}));
+    EXPECT_EQ(numbers_of(all), (std::vector<std::int64_t>{0, 0, 2, 0}));
     EXPECT_EQ(all.hanging.cell, 0);
     EXPECT_EQ(all.hanging.vertices.size(), 2u);
   }
-  EXPECT_EQ(counts(misfits(narrow_on_wide(2, true, 1e-6), 2))[2], 2);  // coordinates of single precision
-  EXPECT_EQ(counts(misfits(narrow_on_wide(2, true, 0.01), 2)), none);  // a gap that is meant
+  EXPECT_EQ(numbers_of(misfits(narrow_on_wide(2, true, 1e-6), 2))[2], 2);  // coordinates of single precision
+  EXPECT_EQ(numbers_of(misfits(narrow_on_wide(2, true, 0.01), 2)), none);  // a gap that is meant
 }
 
 // Skins that touch without a common node are the start of every contact study.
-TEST(Conformity, bodies_that_touch_are_no_misfit) { EXPECT_EQ(counts(misfits(narrow_on_wide(2, false), 2)), none); }
+TEST(Conformity, bodies_that_touch_are_no_misfit) { EXPECT_EQ(numbers_of(misfits(narrow_on_wide(2, false), 2)), none); }
 
 // Both faces of a slit between two nodes that they share, 2 cells below and 3 above: a closed crack, meshed as its sides are.
 TEST(Conformity, a_closed_slit_is_no_misfit) {
@@ -109,7 +109,7 @@ TEST(Conformity, a_closed_slit_is_no_misfit) {
   for (int i = 0; i < 3; ++i)
     add(all.mesh, CellType::QUAD4,
         {i == 0 ? left : all.at(i, 1, 0, 1), i == 2 ? right : all.at(i + 1, 1, 0, 1), all.at(i + 1, 2), all.at(i, 2)});
-  EXPECT_EQ(counts(misfits(all.mesh, 2)), none);
+  EXPECT_EQ(numbers_of(misfits(all.mesh, 2)), none);
 }
 
 // The same on both sides: information, for this may be a crack, or nodes that were not merged.
@@ -121,7 +121,7 @@ TEST(Conformity, facets_at_one_place_in_one_body_are_told) {
     add(all.mesh, CellType::QUAD4, {low(i), low(i + 1), all.at(i + 1, 2), all.at(i, 2)});
   }
   const Misfits found = misfits(all.mesh, 2);
-  EXPECT_EQ(counts(found), (std::vector<std::int64_t>{0, 0, 0, 3}));
+  EXPECT_EQ(numbers_of(found), (std::vector<std::int64_t>{0, 0, 0, 3}));
   EXPECT_EQ(found.coincident.vertices.size(), 2u);
 
   // as a slave skin the upper faces meet what is below in contact, and are cut
@@ -131,7 +131,7 @@ TEST(Conformity, facets_at_one_place_in_one_body_are_told) {
     add(all.mesh, CellType::SEG2, {all.at(i + 1, 1, 0, 1), i == 1 ? all.at(1, 1) : all.at(i, 1, 0, 1)});
   }
   all.mesh.cell_groups.push_back(slaves);
-  EXPECT_EQ(counts(misfits(cut(all.mesh, {"SLAVE"}), 2)), none);
+  EXPECT_EQ(numbers_of(misfits(cut(all.mesh, {"SLAVE"}), 2)), none);
 }
 
 // A slit of one edge whose upper side is a slave skin, cut in two: what is in between is a node of contact.
@@ -145,7 +145,7 @@ TEST(Conformity, slave_skins_never_hang) {
   }
   mesh.cell_groups.push_back(slaves);
   EXPECT_EQ(misfits(mesh, 2).hanging.count, 2);
-  EXPECT_EQ(counts(misfits(cut(mesh, {"SLAVE"}), 2)), none);
+  EXPECT_EQ(numbers_of(misfits(cut(mesh, {"SLAVE"}), 2)), none);
 }
 
 // A wide bent edge of a quadratic cell, two narrow ones along it: their vertex in the middle may be its middle node or another.
@@ -162,7 +162,7 @@ TEST(Conformity, vertices_hang_on_bent_edges) {
     const Nodes narrow{1, 2};
     make_quadratic(all.mesh, narrow);
     const Misfits found = misfits(all.mesh, 2);
-    EXPECT_EQ(counts(found), (std::vector<std::int64_t>{0, 0, 1, 0}));
+    EXPECT_EQ(numbers_of(found), (std::vector<std::int64_t>{0, 0, 1, 0}));
     EXPECT_EQ(found.hanging.node, vertex);
   }
 }
@@ -174,11 +174,11 @@ TEST(Conformity, orders_that_differ_across_an_edge_are_found) {
   all.quad(2, 0, 1, 1);
   make_quadratic(all.mesh, Nodes{1});
   const Misfits found = misfits(all.mesh, 2);
-  EXPECT_EQ(counts(found), (std::vector<std::int64_t>{2, 0, 0, 0}));
+  EXPECT_EQ(numbers_of(found), (std::vector<std::int64_t>{2, 0, 0, 0}));
   EXPECT_EQ(found.middles.cell, 1);
   EXPECT_EQ(found.middles.other, 0);
   EXPECT_EQ(found.middles.vertices, (Nodes{all.at(1, 0), all.at(1, 1)}));
-  EXPECT_EQ(counts(misfits(all.mesh, 2, std::vector<char>{0, 1, 0})), none);  // the neighbours have no element
+  EXPECT_EQ(numbers_of(misfits(all.mesh, 2, std::vector<char>{0, 1, 0})), none);  // the neighbours have no element
 }
 
 TEST(Conformity, four_small_faces_on_a_large_one_hang) {
@@ -187,7 +187,8 @@ TEST(Conformity, four_small_faces_on_a_large_one_hang) {
   for (const double x : {0.0, 1.0})
     for (const double y : {0.0, 1.0}) all.hexa(x, y, 1, 1, 1);
   const Misfits found = misfits(all.mesh, 3);
-  EXPECT_EQ(counts(found), (std::vector<std::int64_t>{0, 0, 4, 0}));  // its edges; the node in the middle needs no more words
+  EXPECT_EQ(numbers_of(found),
+            (std::vector<std::int64_t>{0, 0, 4, 0}));  // its edges; the node in the middle needs no more words
 }
 
 TEST(Conformity, a_vertex_in_the_middle_of_a_face_hangs) {
@@ -197,7 +198,7 @@ TEST(Conformity, a_vertex_in_the_middle_of_a_face_hangs) {
   const Nodes corners{all.at(0, 0, 1), all.at(2, 0, 1), all.at(2, 2, 1), all.at(0, 2, 1)};
   for (std::size_t i = 0; i < 4; ++i) add(all.mesh, CellType::TETRA4, {corners[i], corners[(i + 1) % 4], low, high});
   const Misfits found = misfits(all.mesh, 3);
-  EXPECT_EQ(counts(found), (std::vector<std::int64_t>{0, 0, 1, 0}));
+  EXPECT_EQ(numbers_of(found), (std::vector<std::int64_t>{0, 0, 1, 0}));
   EXPECT_EQ(found.hanging.node, low);
   EXPECT_EQ(found.hanging.vertices.size(), 4u);
 
@@ -206,7 +207,7 @@ TEST(Conformity, a_vertex_in_the_middle_of_a_face_hangs) {
   for (const auto& [x, y] : {std::pair(3.0, 0.0), {-2.0, 2.0}, {-2.0, -2.0}}) add_node(triangle, x, y);
   add(triangle, CellType::TETRA4, {3, 5, 4, 0});
   for (const auto& [a, b] : {std::pair(3, 4), {4, 5}, {5, 3}}) add(triangle, CellType::TETRA4, {a, b, 1, 2});
-  EXPECT_EQ(counts(misfits(triangle, 3)), (std::vector<std::int64_t>{0, 0, 1, 0}));
+  EXPECT_EQ(numbers_of(misfits(triangle, 3)), (std::vector<std::int64_t>{0, 0, 1, 0}));
 }
 
 // Whether the quadrangle is flat does not matter: it is on the same nodes.
@@ -220,7 +221,7 @@ TEST(Conformity, quadrangles_against_triangles_are_found) {
     add(all.mesh, CellType::TETRA4, {box[4], box[6], box[7], top});
     all.mesh.coordinates[3 * static_cast<std::size_t>(box[6]) + 2] += warped;
     const Misfits found = misfits(all.mesh, 3);
-    EXPECT_EQ(counts(found), (std::vector<std::int64_t>{0, 1, 0, 0}));
+    EXPECT_EQ(numbers_of(found), (std::vector<std::int64_t>{0, 1, 0, 0}));
     EXPECT_EQ(found.diagonals.cell, 0);
     EXPECT_EQ(sorted(found.diagonals.vertices), sorted(std::span(box).last(4)));
   }
@@ -234,7 +235,7 @@ TEST(Conformity, cells_drawn_to_simpler_ones_fit) {
   add(all.mesh, CellType::PENTA6, {box[0], box[2], box[3], box[4], box[6], box[7]});
   const std::int32_t below = all.at(0.7, 0.3, -1);
   add(all.mesh, CellType::TETRA4, {box[0], box[2], box[1], below});
-  EXPECT_EQ(counts(misfits(all.mesh, 3)), none);
+  EXPECT_EQ(numbers_of(misfits(all.mesh, 3)), none);
 }
 
 }  // namespace
