@@ -1,4 +1,5 @@
 option(LACON_TESTS "Build the tests" ON)
+option(LACON_TESTS_TOGETHER "Compile the unit tests of a room eight sources at a time: headers are read once for all of them" ON)
 option(LACON_WARNINGS_AS_ERRORS "Treat warnings as errors" OFF)
 set(LACON_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize takes them: address,undefined or thread")
 option(LACON_FUZZ "Build tests/fuzz with libFuzzer, and all it uses with sanitizers (clang)" OFF)

@@ -202,13 +202,14 @@ class _Check:
         self.problem("KEYWORD_13", path, value=_show(value), instead=instead)
 
     def bounds(self, path, row, value):
-        tests = {"above": operator.gt, "at_least": operator.ge, "below": operator.lt, "at_most": operator.le}
+        tests = {"above": (operator.gt, "bound_above"), "at_least": (operator.ge, "bound_at_least"),
+                 "below": (operator.lt, "bound_below"), "at_most": (operator.le, "bound_at_most")}
         if self.largest and isinstance(value, float):
             row = {"at_least": -self.largest, "at_most": self.largest, **row}
         limits = {"at_least": -2**63, "at_most": _largest_count if "at_least" in row else 2**63 - 1, **row} if row["type"] == "integer" else row
-        for key, holds in tests.items():
+        for key, (holds, words) in tests.items():
             if key in limits and not holds(value, limits[key]):
-                self.problem("KEYWORD_15", path, value=_show(value), bound=catalog.part(f"bound_{key}", bound=f"{limits[key]:.10g}"))
+                self.problem("KEYWORD_15", path, value=_show(value), bound=catalog.part(words, bound=f"{limits[key]:.10g}"))
                 return
 
 

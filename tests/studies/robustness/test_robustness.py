@@ -428,15 +428,14 @@ class Skins(StudyTest):
         self.assertRegex((self.folder / "err").read_text(), r"<EVOLUTION_16> .*: it is open, though its average gap is -0\.0883: where TOOL_SKIN ends")
 
     def test_where_no_other_is_found_an_equilibrium_that_is_not_stable_is_followed_and_told(self):
-        """An arch that is pressed, and a tip, as above: both stopped behind 15 iterations that had left it. The tip leaves it for a stable one with 60; with 15 it
-        may, where round-off, which pushes it off, is larger."""
+        """An arch that is pressed, and a tip, as above: both stopped behind 15 iterations that had left it. The tip stands on the middle of one patch, where nothing
+        pushes it off: its first instants end there, with 15 iterations and with 60."""
         figures = run(unseen(5089), LACON, self.folder)
         self.assertEqual((figures["status"], figures["alarms"]), ("finished", ["EVOLUTION_54"]))
-        tip = unseen(26)
-        for most, told in ((15, (True, False)), (60, (False,))):
-            figures = run(dataclasses.replace(tip, most=most), LACON, self.folder)
+        for most in (15, 60):
+            figures = run(dataclasses.replace(unseen(26), most=most), LACON, self.folder)
             self.assertEqual(figures["status"], "finished")
-            self.assertIn("EVOLUTION_54" in figures["alarms"], told)
+            self.assertIn("EVOLUTION_54", figures["alarms"])
 
     def test_a_stable_equilibrium_is_looked_for_less_and_less_often(self):
         """A polygon that rolls on coarse patches: sixteen attempts looked for a stable equilibrium in vain where each instant did, six do now."""
