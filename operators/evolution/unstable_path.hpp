@@ -13,8 +13,8 @@ namespace lacon {
 
 /// What is known of the equilibrium that an instant ends with.
 enum class Stability { stable, unstable, unknown };
-/// @param follows the instant took the matrix as it is: others end with one of a minimum  @param negative pivots of it, where
-/// they are known
+/// @param follows the instant took the matrix as it is: others have left it, or stay on it by symmetry
+/// (Newton::consistent_pivots)  @param negative pivots of it, where they are known
 inline Stability stability_of(bool follows, std::optional<std::int64_t> negative, std::int64_t constraints) {
   if (!follows || (negative && *negative <= constraints)) return Stability::stable;
   return negative ? Stability::unstable : Stability::unknown;
