@@ -12,6 +12,9 @@
 namespace lacon {
 namespace {
 
+/// Of values that are solved for, relative: by no more than that a change which is VALE_REF exceeds it.
+constexpr double slack_of_limit = 1e-9;
+
 std::string place_of(const Observer::Value& value) {
   if (value.node >= 0) return node_name(value.node);
   return part("point_of_cell", {{"point", std::to_string(value.point + 1)}, {"cell", cell_name(value.cell)}});
@@ -52,7 +55,8 @@ void StepEvents::judge(double instant) {
   for (const IncrementLimit& increment : increments_) {
     const std::vector<Observer::Value> now = increment.observer.look(fields_);
     for (std::size_t i = 0; i < now.size(); ++i)
-      if (const double change = std::abs(now[i].value - increment.last[i].value); change > increment.limit)
+      if (const double before = increment.last[i].value, change = std::abs(now[i].value - before);
+          change - increment.limit > slack_of_limit * std::max({increment.limit, std::abs(before), std::abs(now[i].value)}))
         fail("STEP_2", {{"component", now[i].component},
                         {"place", place_of(now[i])},
                         {"change", fmt::format("{:.6g}", change)},

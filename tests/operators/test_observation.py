@@ -136,6 +136,7 @@ class Events(TwoSquares):
         self.assertEqual(self.ids(run), ["EVOLUTION_7"])
         self.assertIn("DX at N2", run.messages[0]["text"])
         self.assertEqual(self.steps(event="DELTA_GRANDEUR", limit=1.1 * EXX, place=place)[1], [0, 1])
+        self.assertEqual(self.steps(event="DELTA_GRANDEUR", limit=(1 - 1e-11) * EXX, place=place)[1], [0, 1])  # equal to it up to round-off
         self.assertEqual(self.steps(event="DELTA_GRANDEUR", limit=0.3 * EXX, place=place, cut=False)[0].status, 3)
 
     def test_large_increments_of_stresses_cut_the_step(self):
