@@ -28,10 +28,15 @@ int Field::component(std::string_view component_name) const {
   return at == components.end() ? -1 : static_cast<int>(at - components.begin());
 }
 
+void put_markers(Field& field) {
+  for (std::size_t k = 0; k < field.present.size(); ++k)
+    if (field.present[k] == Field::marker) field.values[k] = Field::no_value;
+}
+
 std::optional<Extreme> find_extreme(const Field& field, std::size_t component, bool greatest,
                                     const std::function<bool(std::size_t)>& wanted) {
   std::optional<Extreme> best;
-  for (const Field::Presence looked_at : {Field::there, Field::stand_in}) {
+  for (const Field::Presence looked_at : {Field::there, Field::stand_in, Field::marker}) {
     for (std::size_t i = 0; i < field.support.size(); ++i) {
       if (!wanted(i)) continue;
       for (std::size_t row = field.first_row(i); row < field.first_row(i + 1); ++row) {

@@ -1,5 +1,6 @@
 #pragma once
 // A field on nodes, cells, or integration points, on the whole mesh or a part of it.
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -31,10 +32,12 @@ Location find_location(std::string_view name);
 struct Field {
   /// What `present` says of a value.
   enum Presence : std::uint8_t {
-    absent = 0,   ///< there is none
-    there = 1,    ///< as any other
-    stand_in = 2  ///< shown and read at its place, but no part of extrema, sums, means and norms: JEU = -1 without a master
+    absent = 0,    ///< there is none
+    there = 1,     ///< as any other
+    stand_in = 2,  ///< shown and read at its place, but no part of extrema, sums, means and norms: LAGS_C beside its carriers
+    marker = 3     ///< as a stand-in, but no value: no_value says that there is none, JEU = -1 without a master
   };
+  static constexpr double no_value = -1;  ///< what is shown for a marker
 
   std::string name;      ///< "DEPL"
   std::string quantity;  ///< row of catalog/quantities.toml: "DEPL_R"
@@ -80,6 +83,18 @@ struct FieldRows {
   /// With all of its values.
   Field whole() &&;
 };
+
+/// What is made of values like these, whatever it makes of them: nothing where one is absent, a marker where one is a marker, a
+/// stand-in where one stands in.
+constexpr Field::Presence made_of(Field::Presence first, Field::Presence second) {
+  return first == Field::absent || second == Field::absent ? Field::absent : std::max(first, second);
+}
+/// What counts of a value that is taken `factor` times: of a marker or stand-in nothing where that is 0.
+constexpr Field::Presence taken(Field::Presence presence, double factor) {
+  return factor == 0 ? std::min(presence, Field::there) : presence;
+}
+/// What a mixture with a marker has come to is no value: Field::no_value takes its place.
+void put_markers(Field& field);
 
 /// The first of several greatest (or least) values of a component. Stand-ins are looked at only where nothing else is.
 struct Extreme {

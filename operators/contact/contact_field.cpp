@@ -125,12 +125,12 @@ Field contact_field(const Contact& contact, const ContactGeometry& geometry, con
     field.support.push_back(slave.cell);
     field.values.push_back(static_cast<double>(patches.status[p]));
     for (const PatchQuantity& quantity : patch_quantities) field.values.push_back(paired ? (patches.*quantity.values)[p] : 0);
-    field.values.insert(field.values.end(), {paired ? geometry.gap(p) : -1.0, paired ? geometry.coverage(p) : 0,
+    field.values.insert(field.values.end(), {paired ? geometry.gap(p) : Field::no_value, paired ? geometry.coverage(p) : 0,
                                              whole_pressure(p, geometry, patches)});
     for (const std::string& component : field.components)  // JEU is -1 where there is no gap
-      field.present.push_back(paired || component != "JEU" ? Field::there : Field::stand_in);
+      field.present.push_back(paired || component != "JEU" ? Field::there : Field::marker);
   }
-  if (std::count(field.present.begin(), field.present.end(), Field::stand_in) == 0) field.present.clear();
+  if (std::count(field.present.begin(), field.present.end(), Field::marker) == 0) field.present.clear();
   return field;
 }
 
@@ -162,7 +162,8 @@ Field nodal_contact_field(const Mesh& mesh, const Contact& contact, const Contac
       if (patches.status[p] != Status::unpaired) paired.push_back(p);
     const bool active = std::ranges::any_of(all, [&](std::size_t p) { return patches.status[p] == Status::active; });
     field.values.push_back(active ? 2.0 : paired.empty() ? -1.0 : 0.0);
-    field.values.push_back(paired.empty() ? -1.0 : mean(geometry, paired, [&](std::size_t p) { return geometry.gap(p); }));
+    field.values.push_back(paired.empty() ? Field::no_value
+                                          : mean(geometry, paired, [&](std::size_t p) { return geometry.gap(p); }));
     field.values.push_back(mean(geometry, all, [&](std::size_t p) { return whole_pressure(p, geometry, patches); }));
     const std::size_t node = static_cast<std::size_t>(around.nodes[i]);
     const std::span<const double> force(forces.data() + node * dimension, dimension);
@@ -174,9 +175,9 @@ Field nodal_contact_field(const Mesh& mesh, const Contact& contact, const Contac
     }
     field.values.insert(field.values.end(), normals.begin() + 3 * node, normals.begin() + 3 * node + dimension);
     for (const std::string& component : field.components)
-      field.present.push_back(component == "JEU" && paired.empty() ? Field::stand_in : Field::there);
+      field.present.push_back(component == "JEU" && paired.empty() ? Field::marker : Field::there);
   }
-  if (std::count(field.present.begin(), field.present.end(), Field::stand_in) == 0) field.present.clear();
+  if (std::count(field.present.begin(), field.present.end(), Field::marker) == 0) field.present.clear();
   return field;
 }
 

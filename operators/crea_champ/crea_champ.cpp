@@ -183,12 +183,13 @@ Field extreme(Task& task, const Result& result, const std::vector<std::int64_t>&
     each_value(field, [&](std::size_t row, std::size_t c) {
       const std::size_t k = row * field.n_components() + c;
       const Field::Presence presence = field.presence(row, c), so_far = static_cast<Field::Presence>(best.present[k]);
-      if (so_far == presence ? !(measure[k] > largest[k]) : so_far == Field::there) return;
+      if (so_far == presence ? !(measure[k] > largest[k]) : so_far != Field::absent && so_far < presence) return;
       largest[k] = measure[k];
       best.values[k] = instants ? field.instant : kind.ends_with("_ABS") ? std::abs(field.values[k]) : field.values[k];
       set_presence(best, row, c, presence);
     });
   }
+  put_markers(best);
   return best;
 }
 
@@ -411,12 +412,13 @@ Field assemble(Task& task) {
         for (const auto& [component, name] : parts[f].columns) {
           const std::size_t source = one_row ? first : first + k, row = field.first_row(i) + k, c = column(field, name);
           if (!from.has(source, component)) continue;
-          const bool adds_to_stand_in = adds && field.presence(row, c) == Field::stand_in;
+          const Field::Presence added = taken(from.presence(source, component), factor);
           field.at(row, c) = (adds ? field.at(row, c) : 0.0) + factor * from.at(source, component);
-          set_presence(field, row, c, adds_to_stand_in ? Field::stand_in : from.presence(source, component));
+          set_presence(field, row, c, adds && field.has(row, c) ? made_of(field.presence(row, c), added) : added);
         }
     }
   }
+  put_markers(field);
   return finished(task, std::move(field));
 }
 
@@ -434,13 +436,15 @@ bool exist_alike(const Field& a, const Field& b) {
   return true;
 }
 
-/// The fields of COMB must have the first one's quantity, location, components and rows. With a stand-in a sum is one.
+/// The fields of COMB must have the first one's quantity, location, components and rows. With a stand-in or a marker a sum is
+/// one.
 Field combine(Task& task) {
   Field sum;
   bool first = true;
   for (const Keywords& one : task.keywords().factors("COMB")) {
-    const Field field = task.field(one, "CHAM_GD");
+    Field field = task.field(one, "CHAM_GD");
     const double factor = one.real("COEF_R");
+    for (std::uint8_t& presence : field.present) presence = taken(static_cast<Field::Presence>(presence), factor);
     if (first) {
       check_type(field, task.type());
       sum = field;
@@ -452,9 +456,11 @@ Field combine(Task& task) {
         field.support != sum.support || field.offset != sum.offset || !exist_alike(field, sum))
       fail("CREACHAMP_15", {{"keyword", one.path("CHAM_GD")}, {"field", field.name}, {"first", sum.name}});
     if (sum.present.empty()) sum.present = field.present;
-    for (std::size_t k = 0; k < field.present.size(); ++k) sum.present[k] = std::max(sum.present[k], field.present[k]);
+    for (std::size_t k = 0; k < field.present.size(); ++k)
+      sum.present[k] = made_of(static_cast<Field::Presence>(sum.present[k]), static_cast<Field::Presence>(field.present[k]));
     for (std::size_t k = 0; k < sum.values.size(); ++k) sum.values[k] += factor * field.values[k];
   }
+  put_markers(sum);
   return sum;
 }
 

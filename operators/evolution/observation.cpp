@@ -79,7 +79,7 @@ std::vector<Observer::Value> reduce_by_component(const std::string& how, const s
   for (const Observer::Value& value : values) {
     auto column = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.component == value.component; });
     if (column == columns.end()) column = columns.insert(columns.end(), {value.component, {}, {}});
-    (value.presence == Field::stand_in ? column->stand_ins : column->values).push_back(value.value);
+    (value.presence != Field::there ? column->stand_ins : column->values).push_back(value.value);
   }
   std::vector<Observer::Value> reduced;
   for (const Column& column : columns) {
@@ -176,7 +176,7 @@ std::vector<Observer::Value> Observer::of_formula(const std::vector<Value>& valu
     made.back().component.clear();
     made.back().value = results[i];
     for (std::size_t k = 0; k < width; ++k)
-      if (values[i * width + k].presence == Field::stand_in) made.back().presence = Field::stand_in;
+      made.back().presence = made_of(made.back().presence, values[i * width + k].presence);
   }
   return made;
 }

@@ -68,10 +68,14 @@ Frame::Frame(const Mesh& mesh, const Keywords& keywords, bool cylindrical) : pla
                           {"expected", "axes that leave the plane where it is: one angle, or VECT_Y at the left of VECT_X"}});
 }
 
+Vector Frame::radius(const Vector& place) const {
+  const Vector from_origin = place - *origin_;
+  return from_origin - from_origin.dot(line_) * line_;
+}
+
 Axes Frame::at(const Vector& place, std::size_t& lost) const {
   if (!origin_) return axes_;
-  Vector radial = place - *origin_;
-  radial -= radial.dot(line_) * line_;
+  Vector radial = radius(place);
   if (!(radial.norm() > least_)) {
     ++lost;
     Eigen::Index across = 0;

@@ -20,6 +20,8 @@ class Frame {
   Frame(const Mesh& mesh, const Keywords& keywords, bool cylindrical);
 
   bool depends_on_place() const { return origin_.has_value(); }
+  /// From the axis to a place, of axes that depend on it.
+  Eigen::Vector3d radius(const Eigen::Vector3d& place) const;
   /// @param lost counts places on the axis itself, where any direction across it is taken for radial
   Eigen::Matrix3d at(const Eigen::Vector3d& place, std::size_t& lost) const;
 

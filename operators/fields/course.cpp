@@ -22,9 +22,10 @@ Field between(Field first, const Field& second, double share) {
   for (std::size_t k = 0; k < first.values.size(); ++k) first.values[k] += share * (second.values[k] - first.values[k]);
   if (first.present.empty()) first.present = second.present;
   for (std::size_t k = 0; k < second.present.size(); ++k) {
-    first.present[k] = first.present[k] && second.present[k] ? std::max(first.present[k], second.present[k]) : std::uint8_t{0};
+    first.present[k] = made_of(static_cast<Field::Presence>(first.present[k]), static_cast<Field::Presence>(second.present[k]));
     if (!first.present[k]) first.values[k] = 0;
   }
+  put_markers(first);
   return first;
 }
 

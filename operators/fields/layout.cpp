@@ -239,8 +239,9 @@ PointValue value_at(const Field& field, const std::vector<std::int64_t>& row_of_
       found.value += weights[a] * field.at(static_cast<std::size_t>(row), component);
     else if (has_part)
       return {};
-    if (presence == Field::stand_in && has_part) found.presence = Field::stand_in;
+    if (has_part) found.presence = made_of(found.presence, presence);
   }
+  if (found.presence == Field::marker) found.value = Field::no_value;
   return found;
 }
 

@@ -59,7 +59,7 @@ std::vector<std::int64_t> places(const Field& field, std::size_t count);
 /// What a nodal field has at a point.
 struct PointValue {
   double value = 0;
-  Field::Presence presence = Field::absent;  ///< a stand-in where that of a node has a part in it
+  Field::Presence presence = Field::absent;  ///< a stand-in or a marker where that of a node has a part in it
 };
 /// The value of a component at a point of a cell. Nodes of no weight, but for round-off, have no part in it: the point is on a
 /// node or a side without them; where one that has a part lacks the component it does not exist.

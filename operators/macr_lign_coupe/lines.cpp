@@ -9,6 +9,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/meshing/chain.hpp"
+#include "lacon/structures/vector.hpp"
 
 namespace lacon {
 namespace {
@@ -119,6 +120,33 @@ std::vector<LinePoint> line_points(const Mesh& mesh, const CellLocator& locator,
            {{"keyword", line.path(type == "ARC" ? "ANGLE" : "COOR_EXTR")}, {"count", std::to_string(points.size())}});
   locate(points, mesh, locator, line);
   return points;
+}
+
+std::vector<std::array<double, 3>> positions(const std::vector<LinePoint>& points) {
+  std::vector<std::array<double, 3>> found;
+  for (const LinePoint& point : points) found.push_back(point.position);
+  return found;
+}
+
+std::vector<std::array<double, 3>> positions_now(const std::vector<LinePoint>& points, const std::vector<double>& coordinates) {
+  std::vector<std::array<double, 3>> now(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t a = 0; a < points[i].nodes.size(); ++a)
+      for (std::size_t d = 0; d < 3; ++d)
+        now[i][d] += points[i].weights[a] * coordinates[3 * static_cast<std::size_t>(points[i].nodes[a]) + d];
+  return now;
+}
+
+void tell_of_turns(const std::vector<LinePoint>& points, const Keywords& line) {
+  std::size_t count = 0, first = 0;
+  const auto step = [&](std::size_t i) {
+    return vector_at(points[i + 1].position.data()) - vector_at(points[i].position.data());
+  };
+  for (std::size_t i = 1; i + 1 < points.size(); ++i)
+    if (dot(step(i - 1), step(i)) < -0.9 * norm(step(i - 1)) * norm(step(i)) && count++ == 0) first = i;
+  if (count > 0)
+    inform("POST_10", {{"count", std::to_string(count)},
+                       {"place", fmt::format("{} ({:g})", line.path("TYPE"), fmt::join(points[first].position, ", "))}});
 }
 
 }  // namespace lacon

@@ -29,4 +29,11 @@ struct LinePoint {
 /// points lie outside by less than the locator's limit.
 std::vector<LinePoint> line_points(const Mesh& mesh, const CellLocator& locator, const Keywords& line);
 
+std::vector<std::array<double, 3>> positions(const std::vector<LinePoint>& points);
+/// The same where the nodes have these coordinates, (n_nodes, 3).
+std::vector<std::array<double, 3>> positions_now(const std::vector<LinePoint>& points, const std::vector<double>& coordinates);
+
+/// POST_10 where the way from point to point goes back on itself by more than 154 degrees, as places.turns_back has it.
+void tell_of_turns(const std::vector<LinePoint>& points, const Keywords& line);
+
 }  // namespace lacon

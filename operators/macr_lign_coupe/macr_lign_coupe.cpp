@@ -15,6 +15,7 @@
 #include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/layout.hpp"
+#include "lacon/operators/fields/moved_places.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/fields/tensor.hpp"
 #include "lacon/operators/macr_lign_coupe/lines.hpp"
@@ -41,6 +42,9 @@ void add_row(Table& table, const Row& row) {
     column->cells.back() = one.cell;
   }
 }
+
+/// Looks at moved points; nullptr where there is no result.
+using Moved = std::optional<MovedPlaces>;
 
 /// The fields that the order means.
 struct Subject {
@@ -134,7 +138,7 @@ Field at_points(const Mesh& mesh, const Field& field, const std::vector<LinePoin
 }
 
 /// What REPERE makes of a field at the points of a line.
-void turn_axes(const Mesh& mesh, const Keywords& line, const std::vector<LinePoint>& points, Field& made) {
+void turn_axes(const Mesh& mesh, const Keywords& line, const std::vector<LinePoint>& points, Moved& moved, Field& made) {
   const bool local = line.text("REPERE") == "LOCAL", polar = line.text("REPERE") == "POLAIRE";
   const std::vector<Eigen::Matrix3d> along = local ? local_axes(mesh, line, points) : std::vector<Eigen::Matrix3d>();
   std::optional<Frame> frame;
@@ -142,6 +146,9 @@ void turn_axes(const Mesh& mesh, const Keywords& line, const std::vector<LinePoi
   if (polar) given["AXE_Z"] = {0.0, 0.0, 1.0};
   if (!local) frame.emplace(mesh, Keywords(given, line.path("")), polar || line.text("REPERE") == "CYLINDRIQUE");
   const std::vector<Turned> parts = turned_components(made);
+  if (moved && frame && frame->depends_on_place() && !parts.empty())
+    if (const std::vector<double>& now = moved->at(made.order); !now.empty())
+      moved->look_at_axes(line.path("REPERE"), made.instant, *frame, positions(points), positions_now(points, now));
   std::size_t lost = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     Eigen::Matrix3d axes = local ? along[i] : frame->at(Eigen::Map<const Eigen::Vector3d>(points[i].position.data()), lost);
@@ -263,6 +270,7 @@ Derived derive(const Mesh& mesh, const Keywords& line, const std::vector<LinePoi
 struct Values {
   std::vector<std::string> components;
   std::vector<std::vector<std::optional<double>>> at;  ///< (component, point)
+  std::vector<std::vector<char>> marked;               ///< (component, point): a marker stands there; empty: nowhere
 };
 
 /// The field with these components alone.
@@ -291,9 +299,9 @@ void leave_out_stand_ins(Field& field) {
 }
 
 Values interpolate(const Mesh& mesh, const Keywords& line, const Field& field, const std::vector<LinePoint>& points,
-                   const std::vector<std::string>& components) {
+                   const std::vector<std::string>& components, Moved& moved) {
   Field own = at_points(mesh, field, points);
-  if (line.text("REPERE") != "GLOBAL") turn_axes(mesh, line, points, own);
+  if (line.text("REPERE") != "GLOBAL") turn_axes(mesh, line, points, moved, own);
   own = with_components(own, components);
   if (line.has("RESULTANTE")) leave_out_stand_ins(own);
   Values values;
@@ -311,8 +319,11 @@ Values interpolate(const Mesh& mesh, const Keywords& line, const Field& field, c
   values.components = components;
   for (std::size_t c = 0; c < components.size(); ++c) {
     std::vector<std::optional<double>>& column = values.at.emplace_back();
-    for (std::size_t i = 0; i < points.size(); ++i)
+    std::vector<char>& marked = values.marked.emplace_back();
+    for (std::size_t i = 0; i < points.size(); ++i) {
       column.push_back(own.has(i, c) ? std::optional(own.at(i, c)) : std::nullopt);
+      marked.push_back(own.presence(i, c) == Field::marker);
+    }
   }
   return values;
 }
@@ -328,32 +339,21 @@ void add_values(Table& table, const Row& head, const std::vector<LinePoint>& poi
   }
 }
 
-/// POST_10 where the way from point to point goes back on itself by more than 154 degrees, as places.turns_back has it.
-void tell_of_turns(const std::vector<LinePoint>& points, const Keywords& line) {
-  std::size_t count = 0, first = 0;
-  const auto step = [&](std::size_t i) {
-    return vector_at(points[i + 1].position.data()) - vector_at(points[i].position.data());
-  };
-  for (std::size_t i = 1; i + 1 < points.size(); ++i)
-    if (dot(step(i - 1), step(i)) < -0.9 * norm(step(i - 1)) * norm(step(i)) && count++ == 0) first = i;
-  if (count > 0)
-    inform("POST_10", {{"count", std::to_string(count)},
-                       {"place", fmt::format("{} ({:g})", line.path("TYPE"), fmt::join(points[first].position, ", "))}});
-}
-
 void add_means(Table& table, const Row& head, const std::vector<LinePoint>& points, const Values& values, const Keywords& line,
                const std::string& field) {
   if (points.back().along == 0) fail("LIGNCOUPE_6", {{"keyword", line.path("OPERATION")}});
-  std::vector<std::array<double, 6>> columns;
+  std::vector<std::array<std::optional<double>, 6>> columns;
   for (std::size_t c = 0; c < values.components.size(); ++c) {
-    std::vector<double> f;
+    const std::vector<char> marked = values.marked.empty() ? std::vector<char>(points.size(), 0) : values.marked[c];
+    const bool leaves_out = std::ranges::find(marked, 0) != marked.end();  // markers are looked at where nothing else is
+    std::vector<std::optional<double>> f;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!values.at[c][i])
         fail("LIGNCOUPE_7", {{"keyword", line.path("OPERATION")},
                              {"component", values.components[c]},
                              {"field", field},
                              {"number", std::to_string(i + 1)}});
-      f.push_back(*values.at[c][i]);
+      f.push_back(leaves_out && marked[i] ? std::nullopt : values.at[c][i]);
     }
     columns.push_back(moments(points, f));
   }
@@ -361,18 +361,26 @@ void add_means(Table& table, const Row& head, const std::vector<LinePoint>& poin
   for (std::size_t q = 0; q < names.size(); ++q) {
     Row row = head;
     row.push_back({"QUANTITE", "K16", names[q]});
-    for (std::size_t c = 0; c < columns.size(); ++c) row.push_back({values.components[c], "R", columns[c][q]});
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      row.push_back({values.components[c], "R", columns[c][q] ? Table::Cell(*columns[c][q]) : Table::Cell()});
     add_row(table, row);
   }
 }
 
 /// RESULTANTE: the sums over the points under their names; with MOMENT under those of axes, with moments about POINT.
-void add_resultant(Table& table, Row row, const std::vector<LinePoint>& points, const Values& values, const Keywords& line) {
+void add_resultant(Table& table, Row row, const std::vector<LinePoint>& points, const Values& values, const Keywords& line,
+                   const Field& field, Moved& moved) {
   if (line.text("TYPE") == "SEGMENT" || line.text("TYPE") == "ARC")
     inform("LIGNCOUPE_13", {{"keyword", line.path("RESULTANTE")}, {"count", std::to_string(points.size())}});
   std::vector<double> origin = line.has("POINT") ? line.reals("POINT") : std::vector<double>();
   origin.resize(3, 0.0);
-  const Resultant sum = resultant(points, values.components, values.at, origin);
+  const Resultant sum = resultant(positions(points), values.components, values.at, origin);
+  if (moved && line.has("MOMENT"))
+    if (const std::vector<double>& now = moved->at(field.order); !now.empty()) {
+      const MovedPlaces::Places then = positions_now(points, now);
+      moved->look_at_moment(line.path("MOMENT"), field.instant, origin, positions(points), then, sum.magnitude, sum.moment,
+                            resultant(then, values.components, values.at, origin).moment);
+    }
   for (std::size_t c = 0; c < values.components.size() && !line.has("MOMENT"); ++c)
     row.push_back({values.components[c], "R", sum.components[c]});
   for (std::size_t d = 0; d < 3 && line.has("MOMENT"); ++d)
@@ -432,6 +440,8 @@ void macr_lign_coupe(const Order& order, const Base& base) {
   const Mesh mesh = base.mesh(subject.mesh);
   const CellLocator locator(mesh, searched_cells(mesh, keywords));
   Table table;
+  Moved moved;
+  if (subject.result) moved.emplace(base, *subject.result, mesh);
   std::size_t number = 0;
   for (const Keywords& line : keywords.factors("LIGN_COUPE")) {
     check_own_mesh(base, subject.mesh, line, "MAILLAGE", "");
@@ -453,20 +463,22 @@ void macr_lign_coupe(const Order& order, const Base& base) {
                                  {"INST", "R", field.instant}});
       else
         head.push_back({"CHAM_GD", "K8", subject.name});
-      const Values values = interpolate(mesh, line, field, points, wanted_components(field, subject.name, keywords, line));
+      const Values values =
+          interpolate(mesh, line, field, points, wanted_components(field, subject.name, keywords, line), moved);
       if (std::ranges::none_of(
               values.at, [](const auto& c) { return std::ranges::any_of(c, [](const auto& v) { return v.has_value(); }); }))
         fail("LIGNCOUPE_9", {{"keyword", line.path("TYPE")},
                              {"field", subject.name},
                              {"components", fmt::format("{}", fmt::join(values.components, ", "))}});
       if (line.has("RESULTANTE"))
-        add_resultant(table, head, points, values, line);
+        add_resultant(table, head, points, values, line, field, moved);
       else if (line.text("OPERATION") == "MOYENNE")
         add_means(table, head, points, values, line, subject.name);
       else
         add_values(table, head, points, values);
     }
   }
+  if (moved) moved->tell();
   base.store(table);
 }
 

@@ -12,6 +12,7 @@
 #include "lacon/operators/fields/axes.hpp"
 #include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/layout.hpp"
+#include "lacon/operators/fields/moved_places.hpp"
 #include "lacon/operators/fields/selection.hpp"
 
 namespace lacon {
@@ -54,7 +55,8 @@ class Repere {
         model_(model_of(base, result)),
         registry_(order.plugins),
         points_(mesh_, model_, registry_),
-        affe_(order.keywords.factors("AFFE")) {
+        affe_(order.keywords.factors("AFFE")),
+        moved_(base, result, mesh_) {
     for (const Keywords& one : affe_) frames_.emplace_back(mesh_, one, order.keywords.text("REPERE") == "CYLINDRIQUE");
   }
 
@@ -68,6 +70,7 @@ class Repere {
         if (wanted[i]) frame[i] = static_cast<int>(f);
     }
     const bool moving = std::ranges::any_of(frames_, &Frame::depends_on_place);
+    if (moving) look_at_moved(field, frame);
     if (moving && field.location == Location::cells) fail("MODIREPERE_2", {{"field", field.name}});
     if (moving && field.location == Location::gauss_points && !coordinates_) coordinates_ = coordinates_of_points();
     std::vector<std::int64_t> place;
@@ -94,8 +97,32 @@ class Repere {
   }
 
   std::size_t lost() const { return lost_; }
+  const MovedPlaces& moved() const { return moved_; }
 
  private:
+  /// The nodes of what is turned, now and in the mesh. @param frame of each node or cell, -1 for none
+  void look_at_moved(const Field& field, const std::vector<int>& frame) {
+    const std::vector<double>& now = moved_.at(field.order);
+    for (std::size_t f = 0; f < frames_.size() && !now.empty(); ++f) {
+      std::vector<char> wanted(mesh_.n_nodes(), 0);
+      for (const std::int32_t owner : field.support) {
+        const auto i = static_cast<std::size_t>(owner);
+        if (frame[i] != static_cast<int>(f)) continue;
+        if (field.location == Location::nodes)
+          wanted[i] = 1;
+        else
+          for (const std::int32_t node : mesh_.cells[i]) wanted[static_cast<std::size_t>(node)] = 1;
+      }
+      MovedPlaces::Places before, after;
+      for (std::size_t n = 0; n < wanted.size(); ++n)
+        if (wanted[n]) {
+          before.push_back({mesh_.coordinates[3 * n], mesh_.coordinates[3 * n + 1], mesh_.coordinates[3 * n + 2]});
+          after.push_back({now[3 * n], now[3 * n + 1], now[3 * n + 2]});
+        }
+      moved_.look_at_axes(affe_[f].path(""), field.instant, frames_[f], before, after);
+    }
+  }
+
   /// True where a row has all components, false where it has none. Throws MODIREPERE_3 where one is missing.
   bool has_all(const Field& field, std::size_t row, const Turned& what) const {
     std::size_t wanted = 0, found = 0;
@@ -122,6 +149,7 @@ class Repere {
   ModelPoints points_;
   std::vector<Keywords> affe_;
   std::vector<Frame> frames_;
+  MovedPlaces moved_;
   std::optional<Field> coordinates_;
   std::size_t lost_ = 0;
 };
@@ -143,6 +171,7 @@ void modi_repere(const Order& order, const Base& base) {
         base.add_field(to, repere(base.field(from, name, o), one));
   }
   if (repere.lost()) inform("MODIREPERE_4", {{"count", std::to_string(repere.lost())}});
+  repere.moved().tell();
   base.store(to);
 }
 

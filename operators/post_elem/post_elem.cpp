@@ -304,7 +304,12 @@ Table integrals(Subject& subject) {
       const std::size_t count = each_cell(subject, field, cells, add);
       if (count == 0) subject.refuse_place(group);
       const std::vector<std::int32_t> left = of_nodes ? subject.left_out(marked, cells) : std::vector<std::int32_t>();
-      std::vector<Table::Cell> values{group, volume};
+      // VOL is what integrals are over; where components differ in that, all of the place
+      std::vector<double> over;
+      for (std::size_t c = 0; c < sums.size(); ++c)
+        if (!of_patches[c]) over.push_back(sums[c].over);
+      const bool alike = !over.empty() && std::ranges::all_of(over, [&](double one) { return one == over.front(); });
+      std::vector<Table::Cell> values{group, alike ? over.front() : volume};
       for (std::size_t c = 0; c < sums.size(); ++c)
         values.push_back(of_patches[c] ? Table::Cell() : Table::Cell(sums[c].value));
       for (std::size_t c = 0; c < sums.size(); ++c) {

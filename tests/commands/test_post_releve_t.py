@@ -168,11 +168,12 @@ assert [(r['EXTREMA'], r['NOEUD'], r['CMP'], r['VALE']) for r in t] == [
                             "assert t.rows[0]['MOYENNE'] == 3.5 and t.rows[0]['CMP'] == 'DX'"))
 
     def test_resultant_and_moment(self):
-        self.ok(self.action("INST=1.0, GROUP_NO='TOP', NOM_CHAM='DEPL', RESULTANTE=('DX', 'LAGS_C'), MOMENT=('DRX', 'DRY', 'DRZ'), POINT=(1., 0.), "
-                            "OPERATION='EXTRACTION'", """
+        run = self.action("INST=1.0, GROUP_NO='TOP', NOM_CHAM='DEPL', RESULTANTE=('DX', 'LAGS_C'), MOMENT=('DRX', 'DRY', 'DRZ'), POINT=(1., 0.), "
+                          "OPERATION='EXTRACTION'", """
 assert t.para[-5:] == ['RESULT_X', 'RESULT_Y', 'MOMENT_X', 'MOMENT_Y', 'MOMENT_Z'] and len(t) == 1
 assert [t.rows[0][n] for n in t.para[-5:]] == [15, -25, 0, 0, -15], t
-"""))
+""")
+        self.assertEqual(run.status, 0, run.err)
 
     def test_a_resultant_has_the_names_of_its_components(self):
         """Without MOMENT; with it each component is of the axis that its name ends in: u = (0, 0, 3) at (0, 1), (1, 1), (2, 1) turns about X and Y."""
@@ -297,6 +298,57 @@ t = CREA_TABLE(RESU=_F(CHAM_GD=F, NOM_CMP='X1', TOUT='OUI')).EXTR_TABLE()
 assert t.values()['NOEUD'] == ['N4', 'N6'] and t.para[0] == 'CHAM_GD', t
 FIN()
 """))
+
+    def test_a_mean_along_a_line_leaves_out_where_there_is_no_gap(self):
+        """JEU = -1 without a master counted as a gap. What stands in for a value (LAGS_C beside its carriers) is taken as it is shown."""
+        self.ok(self.run_study(self.LINES + """
+def mean(markers, kind=3):
+    def fill(file):
+        file.attrs.update(name='F', quantity='DEPL_R', mesh=M.id, location='NOEU')
+        file.attrs.create('components', ['DX'], dtype=text_type())
+        x = M.getCoordinates().toNumpy()[:5, :1]
+        without = numpy.isin(range(1, 6), markers)[:, None]
+        file['support'], file['values'] = list(range(5)), numpy.where(without, -1.0, 10 * x)
+        file['present'] = numpy.where(without, kind, 1).astype(numpy.uint8)
+    one = current.study.base.write_concept('field', 'F', 'CREA_CHAMP', {}, fill)
+    return table(CHAM_GD=one, GROUP_MA='BACK', NOM_CMP='DX', OPERATION='MOYENNE').DX.values()  # along N1 N4 N2 N5 N3: x = 0 ... 2
+near = lambda found, expected: max(abs(a - b) for a, b in zip(found, expected, strict=True)) < 1e-12
+assert near(mean([]), [10, 20, 0, 20, 0, 20])
+assert near(mean([1]), [12.5, 15, 5, 20, 5, 20]), mean([1])
+assert near(mean([2]), [10, 20, 0, 20, 0, 20]), mean([2])
+assert near(mean([1, 2, 3, 4, 5]), [-1, 0, -1, -1, -1, -1])
+assert mean([3, 4, 5]) == [0, 10], mean([3, 4, 5])  # no piece of the line is left: the extremes alone
+assert near(mean([1], kind=2), [9.875, 20.625, -1, 20, -0.4375, 20.1875]), mean([1], kind=2)
+FIN()
+"""))
+
+    def test_moments_of_nodes_that_have_moved_are_told(self):
+        """Moments take nodes where they are in the mesh: of a body that has turned they were those of another place in silence."""
+        moment = "NOEUD=('N1', 'N2', 'N3'), NOM_CHAM='SIEF_ELNO', OPERATION='EXTRACTION', RESULTANTE='SIYY', MOMENT='DRZ', POINT=(0., 0.)"
+        run = self.action(f"TOUT_ORDRE='OUI', {moment}", "assert t.values()['MOMENT_Z'] == [15.5] * 3, t")
+        self.assertEqual((run.status, run.err.count("<A> <POST_13>")), (0, 1), run.err)
+        # forces 1, 3.5, 6 along Y at x = 0, 1, 2, moved by 1, 2, 3
+        for words in ("(0, 0, 41.5), not (0, 0, 15.5)", "at the instant 1 have", "150 %"):
+            self.assertIn(words, run.err)
+        self.assertNotIn("POST_13", self.action(f"INST=0.0, {moment}", "").err)
+        self.assertNotIn("POST_13", self.action(f"INST=1.0, {moment.replace('POINT=(0., 0.)', 'POINT=(-1e3, 0.)')}", "").err)
+        moved = self.run_study(f"""POURSUITE(){self.field("DEPL_R", ["DX", "DY"], [[1.0, 0.0]] * 3)}
+M = MODI_MAILLAGE(reuse=M, MAILLAGE=M, DEFORME=_F(OPTION='TRAN', DEPL=F))
+T = POST_RELEVE_T(ACTION=_F(INTITULE='it', RESULTAT=R, INST=1.0, {moment}))
+FIN()
+""")
+        self.assertEqual(moved.status, 0, moved.out + moved.err)
+        self.assertNotIn("POST_13", moved.err)
+
+    def test_axes_at_nodes_that_have_turned_are_told(self):
+        """N4 goes from (0, 1) to (4, 1): by 76 degrees about the origin; in axes of the mesh alone nothing turns."""
+        radial = "INST=1.0, GROUP_NO='TOP', NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='EXTRACTION'"
+        run = self.action(f"{radial}, REPERE='POLAIRE'", "")
+        self.assertEqual(run.status, 0, run.err)
+        self.assertIn("<A> <MODIREPERE_6> ACTION[1]/REPERE", run.err)
+        self.assertIn("at the instant 1 have turned some by 76 degrees", run.err)
+        for silent in (radial, f"{radial.replace('1.0', '0.0')}, REPERE='POLAIRE'", f"{radial}, REPERE='UTILISATEUR', ANGL_NAUT=10.0"):
+            self.assertNotIn("MODIREPERE_6", self.action(silent, "").err)
 
     def test_several_actions(self):
         self.ok(self.run_study(STUDY + """

@@ -141,6 +141,31 @@ class CreaChamp(FieldTest):
         nodes = self.make("field_9", TYPE_CHAM="NOEU_CLAC_R", **where)
         self.assertEqual((nodes.support, nodes.values.ravel().tolist()), ([0, 1, 3, 4], [0.5] * 4))
 
+    def test_what_is_made_with_no_gap_is_no_gap(self):
+        """JEU = -1 without a master (3 of `present`) is in no sum, no multiple and nothing between instants: they showed mixtures of it as gaps."""
+        gaps, present = ([(0.5,), (-1,)], [(0.25,), (0.5,)]), ([(1,), (3,)], [(1,), (1,)])
+        contact = {"quantity": "CLAC_R", "location": "ELEM", "components": ["JEU"], "support": [1, 2]}
+        self.write_result("result_3", "mesh_1", [0.0, 1.0], {"CONT_ELEM": {k: {**contact, "values": np.array(gaps[k], float), "present": np.array(present[k], np.uint8)}
+                                                                           for k in (0, 1)}}, label="RES", model="model_2")
+        what = {"OPERATION": "EXTR", "RESULTAT": concept("result_3"), "NOM_CHAM": "CONT_ELEM", "TYPE_CHAM": "ELEM_CLAC_R"}
+
+        def check(first, **keywords):
+            field = self.make("field_9", **keywords)
+            self.assertEqual((field.values.tolist(), field.present.tolist()), ([[first], [-1]], [[1], [3]]))
+
+        check(0.375, INTERPOL="LIN", INST=[0.5], **what)
+        self.make("field_4", INST=[0.0], **what)
+        self.make("field_5", INST=[1.0], **what)
+        combine = lambda a, b: {"OPERATION": "COMB", "TYPE_CHAM": "ELEM_CLAC_R", "COMB": [
+            {"CHAM_GD": concept("field_4"), "COEF_R": a}, {"CHAM_GD": concept("field_5"), "COEF_R": b}]}
+        check(-0.25, **combine(-1.0, 1.0))
+        unmixed = self.make("field_9", **combine(0.0, 2.0))  # none of it is in this
+        self.assertEqual((unmixed.values.tolist(), set(unmixed.present.ravel().tolist())), ([[0.5], [1]], {1}))
+        parts = [{"TOUT": "OUI", "CHAM_GD": concept("field_5"), "COEF_R": 2.0}, {"TOUT": "OUI", "CHAM_GD": concept("field_4"), "COEF_R": 3.0, "CUMUL": "OUI"}]
+        check(2.0, OPERATION="ASSE", TYPE_CHAM="ELEM_CLAC_R", MODELE=concept("model_2"), ASSE=parts)
+        check(2.0, OPERATION="ASSE", TYPE_CHAM="ELEM_CLAC_R", MODELE=concept("model_2"), ASSE=[{**parts[1], "CUMUL": "NON"}, {**parts[0], "CUMUL": "OUI"}])
+        check(0.5, TYPE_MAXI="MAXI_ABS", NUME_ORDRE=[0], **what)
+
     def test_values_on_groups_the_later_one_counts(self):
         field = self.make("field_3", OPERATION="AFFE", TYPE_CHAM="NOEU_DEPL_R", MAILLAGE=concept("mesh_1"), AFFE=[
             {"TOUT": "OUI", "NOM_CMP": ["DX"], "VALE": [1.0]}, {"GROUP_MA": "SKIN", "NOM_CMP": ["DX", "DY"], "VALE": [2.0, 3.0]},
@@ -353,6 +378,8 @@ class PostElem(FieldTest):
         np.testing.assert_allclose(table["INTE_JEU"], [0, 1, 1], atol=1e-14)
         np.testing.assert_allclose(table["MOYE_JEU"][1:], [0.5, 0.5], atol=1e-14)
         np.testing.assert_allclose(table["MOYE_PRES"], [0, -25, -50 / 3], atol=1e-13)
+        table = self.table(INTEGRALE={**of, "GROUP_MA": ["LEFT", "RIGHT", "BODY"], "NOM_CMP": ["JEU"]})  # alone, VOL is what it is over
+        np.testing.assert_allclose([table["VOL"], table["INTE_JEU"]], [[0, 2, 2], [0, 1, 1]], atol=1e-14)
         norm = self.table(NORME={**of, "TYPE_NORM": "L2", "TOUT": "OUI", "NOM_CMP": ["JEU"]})["VALE_NORM"]
         self.assertAlmostEqual(norm[0], np.sqrt(2) / 2, 14)
 

@@ -84,6 +84,53 @@ class MacrLignCoupe(OperatorTest):
         rows = self.lines({"TYPE": "GROUP_NO", "GROUP_NO": "LINE"})
         self.assertEqual(self.column(rows, "DX"), [5, 5, 5])
 
+    def test_no_gap_along_a_line_is_no_gap(self):
+        """JEU = -1 without a master (3 of `present`) at (0, y): between it and the gaps beside it mixtures were shown, and means took -1 for a gap."""
+        points, cells = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)], [("QUAD4", [0, 1, 4, 3]), ("QUAD4", [1, 2, 5, 4])]
+        self.write(points, cells, [(x if x else -1, -1) for x, _ in points], instants=(0.0, ), present=[(1 if x else 3, 3) for x, _ in points],
+                   node_groups={"LINE": [0, 1, 2]})
+        segment = {"NB_POINTS": 5, "COOR_ORIG": [0.0, 0.5], "COOR_EXTR": [2.0, 0.5]}
+        rows = self.lines(segment)
+        np.testing.assert_allclose(self.column(rows, "DX"), [-1, -1, 1, 1.5, 2], atol=1e-14)
+        self.assertEqual(self.column(rows, "DY"), [-1] * 5)
+        for line in (segment, {"TYPE": "GROUP_NO", "GROUP_NO": "LINE"}):
+            rows = self.lines({**line, "OPERATION": "MOYENNE"})  # of x from 1 to 2; where nothing else is, of the markers
+            np.testing.assert_allclose(self.column(rows, "DX"), [1.5, 1, 1, 2, 1, 2], atol=1e-13)
+            np.testing.assert_allclose(self.column(rows, "DY"), [-1, 0, -1, -1, -1, -1], atol=1e-13)
+        rows = self.lines({**segment, "NB_POINTS": 3, "COOR_EXTR": [1.0, 0.5], "OPERATION": "MOYENNE", "NOM_CMP": ["DX"]})
+        self.assertEqual(self.column(rows, "DX"), [None, None, 1, 1, None, None])  # a single point is no piece of a line
+
+    def turned(self, deformed=False):
+        """The squares of plane(), turned by 90 degrees about the origin at the second instant, and a force along Y at (2, 0)."""
+        self.plane()
+        with h5py.File(self.path("mesh_1")) as file:
+            points = file["coordinates"][()][:, :2]
+        if deformed:
+            with h5py.File(self.path("mesh_1"), "a") as file:
+                file.attrs["keywords"] = '{"DEFORME": {"OPTION": "TRAN"}}'
+        field = {"quantity": "DEPL_R", "location": "NOEU", "components": ["DX", "DY"], "support": range(len(points))}
+        turn = np.column_stack([-points[:, 1], points[:, 0]]) - points
+        force = np.array([(0.0, float(n == 2)) for n in range(len(points))])
+        self.write_result("result_2", "mesh_1", (0.0, 1.0), {"DEPL": {k: {**field, "values": k * turn} for k in (0, 1)},
+                                                             "REAC_NODA": {k: {**field, "values": force} for k in (0, 1)}}, label="RESU")
+
+    def test_places_that_have_moved_are_told(self):
+        """Moments and radial axes are of places in the mesh, which was not said of bodies that have turned."""
+        moment = {"TYPE": "GROUP_NO", "GROUP_NO": "LINE", "RESULTANTE": ["DX", "DY"], "MOMENT": ["DRZ"], "POINT": [0.0, 0.0]}
+        radial = {"TYPE": "GROUP_NO", "GROUP_NO": "LINE", "REPERE": "POLAIRE", "ORIGINE": [0.0, 0.0]}
+        for deformed, told in ((False, ["MODIREPERE_6", "POST_13"]), (True, [])):
+            self.turned(deformed)
+            run = self.run_command("MACR_LIGN_COUPE", {**self.subject({"NOM_CHAM": "REAC_NODA"}), "LIGN_COUPE": [moment, radial]}, result="table_9")
+            self.assertEqual((run.status, [m for m in self.ids(run) if m != "MODIREPERE_4"]), (0, told), run.stderr)
+            if told:
+                self.assertIn("by 90 degrees", run.stderr)
+                self.assertIn("141 % of the largest distance from POINT: where nodes are then the moment is (0, 0, 0), not (0, 0, 2)", run.stderr)
+        self.turned()
+        for line, more in ((moment, {"INST": [0.0]}), ({**moment, "POINT": [-100.0, 0.0]}, {}), ({**radial, "REPERE": "UTILISATEUR", "ANGL_NAUT": [5.0]}, {})):
+            line = {k: v for k, v in line.items() if k != "ORIGINE" or line["REPERE"] == "POLAIRE"}
+            self.lines(line, NOM_CHAM="REAC_NODA", **more)
+            self.assertFalse({"POST_13", "MODIREPERE_6"} & set(self.messages), self.messages)
+
     def test_a_model_or_mesh_that_is_not_the_fields_is_refused(self):
         self.plane()
         self.write_mesh("mesh_5", [(0, 0), (1, 0)], [("SEG2", [0, 1])])

@@ -11,6 +11,7 @@ SQUARE = np.array([(1, 0, 0), (3, 0, 0), (3, 2, 0), (1, 2, 0)], float)
 TETRAHEDRON = np.array([(1, 0, 0), (3, 0, 0), (1, 2, 1), (0, -1, 2)], float)
 VECTOR = ["DX", "DY", "DZ", "LAGS_C"]
 TENSOR = ["SIXX", "SIYY", "SIZZ", "SIXY", "SIXZ", "SIYZ"]
+TURNED = ["MODIREPERE_6"]  # a result whose displacements turn places
 AXES = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
 
 
@@ -63,9 +64,9 @@ class ModiRepere(OperatorTest):
         vectors = np.column_stack([r[:, None] * e_r + 2 * e_t, np.full(4, 9.0)])
         self.write("mesh_1", {"DEPL": self.field("NOEU", ["DX", "DY", "LAGS_C"], vectors), "SIEF_ELNO": self.field("ELNO", TENSOR[:4], tensors)})
         about = {"ORIGINE": [0.0, 1.0]}
-        np.testing.assert_allclose(self.turn("DEPL", "VECT_2D", "CYLINDRIQUE", about), [(x, 2, 9) for x in r], atol=1e-14)
-        np.testing.assert_allclose(self.turn("SIEF_ELNO", "TENS_2D", "CYLINDRIQUE", about), [(1, 3, 5, 7)] * 4, atol=1e-14)
-        part = self.turn("DEPL", "VECT_2D", "CYLINDRIQUE", {"GROUP_NO": "ENDS", **about}, NOM_CMP=["DX", "DY"])
+        np.testing.assert_allclose(self.turn("DEPL", "VECT_2D", "CYLINDRIQUE", about, TURNED), [(x, 2, 9) for x in r], atol=1e-14)
+        np.testing.assert_allclose(self.turn("SIEF_ELNO", "TENS_2D", "CYLINDRIQUE", about, TURNED), [(1, 3, 5, 7)] * 4, atol=1e-14)
+        part = self.turn("DEPL", "VECT_2D", "CYLINDRIQUE", {"GROUP_NO": "ENDS", **about}, TURNED, NOM_CMP=["DX", "DY"])
         np.testing.assert_array_equal(part[[1, 3]], vectors[[1, 3]])
         np.testing.assert_allclose(part[[0, 2], :2], [(x, 2) for x in r[[0, 2]]], atol=1e-14)
 
@@ -81,7 +82,7 @@ class ModiRepere(OperatorTest):
         vectors[0, :3] = 1, 2, 3
         self.write("mesh_3", {"DEPL": self.field("NOEU", VECTOR, vectors)})
         about = {"ORIGINE": [1.0, 0.0, 0.0], "AXE_Z": [0.0, 0.0, 2.0]}
-        found = self.turn("DEPL", "VECT_3D", "CYLINDRIQUE", about, messages=["MODIREPERE_4"])
+        found = self.turn("DEPL", "VECT_3D", "CYLINDRIQUE", about, messages=["MODIREPERE_4", *TURNED])
         np.testing.assert_allclose(found[1:], [(4, 5, 6, 0)] * 3, atol=1e-14)
         self.assertEqual(found[0, 1], 3)
         np.testing.assert_allclose(np.linalg.norm(found[0]), np.sqrt(14))
@@ -109,6 +110,19 @@ class ModiRepere(OperatorTest):
             with self.subTest(affe=affe):
                 expected = [(*(np.array(axes) @ (1, 2, 3)), 4)] * 4
                 np.testing.assert_allclose(self.turn("DEPL", "VECT_3D", "UTILISATEUR", affe), expected, atol=1e-14)
+
+    def test_places_that_have_turned_are_told(self):
+        """By 30 degrees about the axis: radial directions are those of the mesh, and nothing said so. Not of what goes along them, nor of other axes."""
+        about = {"ORIGINE": [0.0, 0.0]}
+        for angle, stretch, deformed, told in ((30, 1, False, True), (2, 1, False, False), (0, 1.5, False, False), (30, 1, True, False)):
+            c, s = np.cos(np.radians(angle)) * stretch, np.sin(np.radians(angle)) * stretch
+            x = SQUARE[:, :2]
+            tensors = [components(np.eye(3), 4)] * 4
+            self.write("mesh_1", {"DEPL": self.field("NOEU", ["DX", "DY"], x @ np.array([(c, s), (-s, c)]) - x), "SIEF_ELNO": self.field("ELNO", TENSOR[:4], tensors)})
+            with h5py.File(self.path("mesh_1"), "a") as file:
+                file.attrs["keywords"] = '{"DEFORME": {}}' if deformed else "{}"
+            self.turn("SIEF_ELNO", "TENS_2D", "CYLINDRIQUE", about, TURNED if told else ())
+            self.turn("SIEF_ELNO", "TENS_2D", "UTILISATEUR", {"ANGL_NAUT": [10.0]})
 
     def test_refuses(self):
         cells = {**self.field("ELGA", ["SIXX"], [[1.0]]), "location": "ELEM", "components": TENSOR, "values": np.zeros((1, 6))}

@@ -71,6 +71,18 @@ class ProjChamp(OperatorTest):
             present = self.read_field("result_4", "DEPL", 0).present
             self.assertEqual([1, 1] if present is None else present.ravel().tolist(), [kind, kind])
 
+    def test_a_mixture_with_no_gap_is_no_gap(self):
+        """JEU = -1 without a master (3 of `present`) at the node (1, 0) alone: at places that it has a part in it was mixed with the gaps beside it,
+        and on the others' side it has no part."""
+        self.write_mesh("mesh_5", [(0.25, 0), (0.5, 0.5), (0, 0.5), (1, 1)], [("POI1", [k]) for k in range(4)])
+        skin = {**self.field, "support": range(4), "values": [0.02, -1, 0.02, 0.02], "present": [1, 3, 1, 1]}
+        self.write_result("result_3", "mesh_1", [0.0], {"DEPL": {0: skin}}, label="RES")
+        run = self.project(MAILLAGE_2=concept("mesh_5"), VIS_A_VIS=[{"GROUP_MA_1": "LEFT"}])
+        found = self.values(run, 0)
+        self.assertEqual([found[0], found[1]], [-1, -1])
+        np.testing.assert_allclose([found[2], found[3]], 0.02, rtol=1e-14)
+        self.assertEqual(self.read_field("result_4", "DEPL", 0).present.ravel().tolist(), [3, 3, 1, 1])
+
     def test_a_projection_that_reaches_no_node_is_refused(self):
         """Too far away, or from cells of another dimension: no result without values."""
         self.write_mesh("mesh_1", POINTS, [*CELLS, ("SEG2", [0, 1])], cell_groups={"SKIN": [2]})

@@ -17,6 +17,11 @@ def holds(file):
 # ---------------------------------------------------------------------------------------------------- mesh
 
 
+def keywords(file):
+    """Those of the command that wrote a concept last."""
+    return json.loads(text(file.attrs["keywords"])) if "keywords" in file.attrs else {}
+
+
 def dimension(mesh):
     """2 or 3"""
     return int(mesh.attrs["dimension"])

@@ -12,7 +12,7 @@ class FieldData:
 
     support (n) node or cell numbers, offset (n + 1) or None, values (r, c), present (r, c) of bool: row r of cell support[i] for
     offset[i] <= r < offset[i + 1]. `counted` (r, c) of bool: of what is present the values that enter extrema, sums, means and
-    norms. A field of functions has their ids in `functions`, and indices into that list as values.
+    norms, `marked` of those that are no value (JEU = -1 without a master). A field of functions has their ids in `functions`, and indices into that list as values.
     """
 
     def __init__(self, file):
@@ -24,6 +24,7 @@ class FieldData:
         self.values = file["values"][:]
         presence = file["present"][:] if "present" in file else numpy.ones(self.values.shape, numpy.uint8)
         self.present, self.counted = presence != 0, presence == 1
+        self.marked = presence == 3
 
     def type(self):
         """"NOEU_DEPL_R\""""

@@ -38,6 +38,12 @@ def tensors(components, values):
     return found
 
 
+def has_turned(components):
+    """Whether there are components of a vector or tensor, which other axes change."""
+    none = numpy.zeros((0, len(components)))
+    return bool(vectors(components, none) or tensors(components, none))
+
+
 def turned(components, values, there, axes):
     """The values (n, components) with vectors and tensors in other axes (n, 3, 3), whose rows are unit vectors.
     @return (values, there); a vector or tensor that is not whole has no components in other axes"""
@@ -64,16 +70,8 @@ def at(call, k, path, points, plane):
         return numpy.broadcast_to(_nautical(k["ANGL_NAUT"]), (len(points), 3, 3))
     if k["REPERE"] == "LOCAL":
         return line_axes(call, k, path, points, plane)
-    origin = numpy.zeros(3)
-    given = k.get("ORIGINE", ())
-    origin[:len(given)] = given
-    line = numpy.array([0.0, 0.0, 1.0])
-    if k["REPERE"] == "CYLINDRIQUE" and not plane:
-        if "AXE_Z" not in k or not any(k["AXE_Z"]):
-            call.fail("POST_8", f"{path}/AXE_Z")
-        line = numpy.array(k["AXE_Z"]) / numpy.linalg.norm(k["AXE_Z"])
-    radial = points - origin
-    radial -= numpy.outer(radial @ line, line)
+    origin, line = axis(call, k, path, plane)
+    radial = radii(points, (origin, line))
     length = numpy.linalg.norm(radial, axis=1)
     lost = ~(length > 1e-10 * max(abs(points - origin).max(), 1e-300))
     if lost.any():
@@ -86,6 +84,26 @@ def at(call, k, path, points, plane):
     around = numpy.cross(along, radial)
     polar = plane or k["REPERE"] == "POLAIRE"
     return numpy.stack([radial, around, along] if polar else [radial, along, around], axis=1)
+
+
+def axis(call, k, path, plane):
+    """(a point, unit vector) of the axis that REPERE='POLAIRE' and 'CYLINDRIQUE' are about"""
+    origin = numpy.zeros(3)
+    given = k.get("ORIGINE", ())
+    origin[:len(given)] = given
+    line = numpy.array([0.0, 0.0, 1.0])
+    if k["REPERE"] == "CYLINDRIQUE" and not plane:
+        if "AXE_Z" not in k or not any(k["AXE_Z"]):
+            call.fail("POST_8", f"{path}/AXE_Z")
+        line = numpy.array(k["AXE_Z"]) / numpy.linalg.norm(k["AXE_Z"])
+    return origin, line
+
+
+def radii(points, about):
+    """From an axis, as axis() gives it, to points (n, 3)."""
+    origin, line = about
+    from_origin = points - origin
+    return from_origin - numpy.outer(from_origin @ line, line)
 
 
 def line_axes(call, k, path, points, plane):

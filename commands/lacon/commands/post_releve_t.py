@@ -4,10 +4,11 @@ from ..core.late import numpy
 from ..tables import storage
 from ..tables.table import Table
 from . import axes, places
+from .moved_places import MovedPlaces
 
 
 def post_releve_t(call):
-    table = Table()
+    table, moved = Table(), MovedPlaces(call)
     for i, action in enumerate(call.keywords["ACTION"], 1):
         path = f"ACTION[{i}]"
         operation = action["OPERATION"]
@@ -16,12 +17,13 @@ def post_releve_t(call):
         if "DIRECTION" in action and not any(action["DIRECTION"]):
             call.fail("POST_8", f"{path}/DIRECTION")
         for k, (head, field) in enumerate(_fields(call, action, path)):
-            frame = _Frame(call, action, path, field)
+            frame = _Frame(call, action, path, field, head, moved)
             if k == 0:
                 frame.tell_of_turns()
             made = frame.resultant() if "RESULTANTE" in action else getattr(frame, operation.lower())()
             for row in made:
                 table.add_row({**head, **row})
+    moved.tell()
     if "TITRE" in call.keywords:
         table.titr = "\n".join(call.keywords["TITRE"])
     return storage.make(call, table)
@@ -36,9 +38,9 @@ def _fields(call, action, path):
 class _Frame:
     """A field at the nodes of one ACTION."""
 
-    def __init__(self, call, action, path, field):
+    def __init__(self, call, action, path, field, head, moved):
         mesh = field.mesh()
-        self.call, self.action, self.path, self.field = call, action, path, field
+        self.call, self.action, self.path, self.field, self.head, self.moved = call, action, path, field, head, moved
         values, there = places.at_nodes(call, field, path)
         keyword = next((k for k in ("NOM_CMP", "RESULTANTE") if k in action), "")
         wanted = action[keyword] if keyword else field.components
@@ -52,10 +54,12 @@ class _Frame:
         if action["REPERE"] != "GLOBAL":
             own, own_there = axes.turned(field.components, own, own_there,
                                          axes.at(call, action, path, self.points, mesh.getDimension() == 2))
+            self._look_at_axes(mesh.getDimension() == 2)
         if action["OPERATION"] in ("EXTREMA", "MOYENNE_ARITH") or "RESULTANTE" in action:
             own_there &= _entering(field, nodes, there[nodes])
         self.values, self.there = own[:, columns], own_there[:, columns]
         self.all_values, self.all_there = values, there
+        self.marked = _marked(field, nodes)[:, columns]
         self._derive()
 
     def _derive(self):
@@ -75,6 +79,18 @@ class _Frame:
             self.call.fail("POST_7", f"{self.path}/{keyword}", field=self.field.name, components=", ".join(self.names))
         self.names, self.values = list(made), numpy.column_stack(list(made.values()))
         self.there = numpy.repeat(self.there.all(axis=1)[:, None], len(made), axis=1)
+        self.marked = numpy.zeros(self.there.shape, bool)
+
+    def _displacements(self):
+        return self.moved.displacements(self.action, self.head, self.field.mesh(), self.nodes)
+
+    def _look_at_axes(self, plane):
+        """Of what REPERE turns at places that have moved."""
+        if self.action["REPERE"] not in ("POLAIRE", "CYLINDRIQUE") or not axes.has_turned(self.field.components):
+            return
+        moved = self._displacements()
+        if moved is not None:
+            self.moved.look_at_axes(f"{self.path}/REPERE", self.head, axes.axis(self.call, self.action, self.path, plane), self.points, moved)
 
     def _normals(self):
         """Of the line of nodes, in the axes of the components."""
@@ -139,22 +155,18 @@ class _Frame:
     def moyenne(self):
         """Six rows: mean along the line of nodes, first moment, extremes, and the ends of the straight line with the same two moments.
 
-        MOMENT_0 = 1/l int f ds, MOMENT_1 = 12/l^2 int f (s - l/2) ds, f linear between nodes; ends MOMENT_0 -+ MOMENT_1/2.
+        MOMENT_0 = 1/l int f ds, MOMENT_1 = 12/l^2 int f (s - l/2) ds, f linear between nodes; ends MOMENT_0 -+ MOMENT_1/2. Pieces that end at a
+        marker (JEU without a master) are left out, as MACR_LIGN_COUPE does it (sums.hpp), unless all nodes are.
         """
         s = places.curved_abscissa(self.points)
         if not self.there.all():
             self.call.fail("POST_4", self.path, node=f"N{self.nodes[int(numpy.flatnonzero(~self.there.all(axis=1))[0])] + 1}", field=self.field.name)
         if s[-1] == 0.0:
             self.call.fail("POST_5", self.path)
-        step = numpy.diff(s)[:, None]
-        f, arm = self.values, (s - s[-1] / 2)[:, None]
-        mean = (step * (f[1:] + f[:-1]) / 2).sum(axis=0) / s[-1]
-        # Simpson's rule, exact for the product of two linear functions
-        middle = (f[1:] + f[:-1]) * (arm[1:] + arm[:-1])
-        first = 12 / s[-1] ** 2 * (step * (f[1:] * arm[1:] + f[:-1] * arm[:-1] + middle) / 6).sum(axis=0)
-        for what, row in (("MOMENT_0", mean), ("MOMENT_1", first), ("MINIMUM", f.min(axis=0)), ("MAXIMUM", f.max(axis=0)),
-                          ("MOYE_INT", mean - first / 2), ("MOYE_EXT", mean + first / 2)):
-            yield {"QUANTITE": ("K16", what), **{name: ("R", float(v)) for name, v in zip(self.names, row)}}
+        columns = [_moments(s, self.values[:, k], marked if marked.any() and not marked.all() else numpy.zeros(len(s), bool))
+                   for k, marked in enumerate(self.marked.T)]
+        for what, row in zip(("MOMENT_0", "MOMENT_1", "MINIMUM", "MAXIMUM", "MOYE_INT", "MOYE_EXT"), zip(*columns)):
+            yield {"QUANTITE": ("K16", what), **{name: ("R", v) for name, v in zip(self.names, row)}}
 
     def resultant(self):
         """One row: sums of the components RESULTANTE under their names; with MOMENT under those of axes, with moments about POINT, to which
@@ -169,11 +181,42 @@ class _Frame:
         forces[:, along] = given
         point[:len(action["POINT"])] = action["POINT"]
         moment = numpy.cross(self.points - point, forces).sum(axis=0)
+        moved = self._displacements()
+        if moved is not None:
+            self.moved.look_at_moment(f"{self.path}/MOMENT", self.head, self.points - point, moved, forces, moment)
         for k, name in zip(_axes(action["MOMENT"]), action["MOMENT"]):
             if name in self.field.components:
                 column = self.field.components.index(name)
                 moment[k] += self.all_values[self.nodes, column][self.all_there[self.nodes, column]].sum()
         return [{**{f"RESULT_{'XYZ'[k]}": v for k, v in zip(along, sums)}, **{f"MOMENT_{axis}": ("R", float(v)) for axis, v in zip("XYZ", moment)}}]
+
+
+def _moments(s, f, left_out):
+    """MOMENT_0, MOMENT_1, MINIMUM, MAXIMUM, MOYE_INT, MOYE_EXT of values f at the abscissas s: of the pieces neither end of which is left out, and
+    the straight line from the first to the last of them that has their mean and slope; None where there is no such piece."""
+    extremes = float(f[~left_out].min()), float(f[~left_out].max())
+    piece = numpy.flatnonzero(~left_out[1:] & ~left_out[:-1])
+    step = s[piece + 1] - s[piece]
+    length = step.sum()
+    if not length > 0:
+        return (None, None, *extremes, None, None)
+    middle = (step * (s[piece] + s[piece + 1])).sum() / 2 / length
+    mean = (step * (f[piece] + f[piece + 1])).sum() / 2 / length
+    a, b = s[piece] - middle, s[piece + 1] - middle
+    # Simpson's rule, exact for the product of two linear functions
+    first = (step * (f[piece] * a + f[piece + 1] * b + (f[piece] + f[piece + 1]) * (a + b))).sum() / 6
+    slope = first / ((step * (a * a + a * b + b * b)).sum() / 3)
+    begin, end = s[piece[0]], s[piece[-1] + 1]
+    return (float(mean), float(slope * (end - begin)), *extremes, float(mean + slope * (begin - middle)), float(mean + slope * (end - middle)))
+
+
+def _marked(field, nodes):
+    """Where nodes have a marker in place of a value."""
+    if field.location != "NOEU":
+        return numpy.zeros((len(nodes), len(field.components)), bool)
+    mask = numpy.zeros((field.mesh().getNumberOfNodes(), len(field.components)), bool)
+    mask[field.support] = field.marked
+    return mask[nodes]
 
 
 def _entering(field, nodes, there):

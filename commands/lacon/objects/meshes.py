@@ -40,6 +40,10 @@ class Mesh(Concept):
     def group_names(self, kind):
         return self._read(contents.group_names, kind)
 
+    def is_deformed(self):
+        """Whether MODI_MAILLAGE with DEFORME was the last command that changed it."""
+        return "DEFORME" in self._read(contents.keywords)
+
     def nodes_of(self, cells):
         """Nodes of cells, one cell after the other."""
         return self._read(contents.nodes_of, cells)

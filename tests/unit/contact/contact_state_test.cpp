@@ -431,7 +431,7 @@ TEST_F(Touching, ContElemHoldsWhatThePatchesCarry) {
   EXPECT_THROW(patches_of(elsewhere, mesh, contact, "RESU"), Error);
 }
 
-TEST_F(Touching, ContElemHasAStandInForTheGapOfAPatchWithoutMasterAlone) {
+TEST_F(Touching, ContElemHasAMarkerForTheGapOfAPatchWithoutMasterAlone) {
   ContactState now = state();
   now.update_geometry(displacement);
   Patchwise patches(1);
@@ -440,7 +440,7 @@ TEST_F(Touching, ContElemHasAStandInForTheGapOfAPatchWithoutMasterAlone) {
   patches.status[0] = Status::unpaired;
   const Field field = contact_field(contact, now.geometry(), patches);
   for (std::size_t c = 0; c < field.components.size(); ++c)
-    EXPECT_EQ(field.presence(0, c), field.components[c] == "JEU" ? Field::stand_in : Field::there) << field.components[c];
+    EXPECT_EQ(field.presence(0, c), field.components[c] == "JEU" ? Field::marker : Field::there) << field.components[c];
 }
 
 // The slave from x = -0.6 to 0.4, masters from -0.5 to 0.3 and from there to 1.5, all turned: lengths have no direction.
@@ -557,7 +557,7 @@ TEST_F(Touching, PressuresAtNodesAreOfWhatWholePatchesCarry) {
     EXPECT_NEAR(field.at(row, static_cast<std::size_t>(field.component("PRES"))), pressure[row], 1e-12) << row;
 }
 
-TEST_F(Touching, ANodeWithoutAnyMasterHasAStandInForItsGap) {
+TEST_F(Touching, ANodeWithoutAnyMasterHasAMarkerForItsGap) {
   ContactState now = state();
   Patchwise patches(1);
   patches.status[0] = Status::unpaired;
@@ -565,7 +565,7 @@ TEST_F(Touching, ANodeWithoutAnyMasterHasAStandInForItsGap) {
   for (std::size_t row = 0; row < 3; ++row) {
     EXPECT_EQ(field.at(row, 0), -1);
     EXPECT_EQ(field.at(row, 1), -1);
-    EXPECT_EQ(field.presence(row, 1), Field::stand_in);
+    EXPECT_EQ(field.presence(row, 1), Field::marker);
     EXPECT_EQ(field.presence(row, 2), Field::there);
   }
 }
