@@ -20,8 +20,8 @@ std::vector<FieldInstant> course_of(const Result& result, const std::string& nam
 /// What two fields have in common to be looked at between them: components and places.
 bool on_the_same_places(const Field& first, const Field& second);
 
-/// On the line from one field to another at the same places, at this share of the way. What is a stand-in or a marker in either is one,
-/// what one of them has not is not there.
+/// On the line from one field to another at the same places, at this share of the way. What is a stand-in or a marker in either
+/// is one, what one of them has not is not there.
 Field between(Field first, const Field& second, double share);
 
 }  // namespace lacon
