@@ -119,7 +119,7 @@ class Repere {
           before.push_back({mesh_.coordinates[3 * n], mesh_.coordinates[3 * n + 1], mesh_.coordinates[3 * n + 2]});
           after.push_back({now[3 * n], now[3 * n + 1], now[3 * n + 2]});
         }
-      moved_.look_at_axes(affe_[f].path(""), field.instant, frames_[f], before, after);
+      moved_.look_at_axes(affe_[f].path("ORIGINE"), field.instant, frames_[f], before, after);
     }
   }
 
