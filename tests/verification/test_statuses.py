@@ -111,7 +111,7 @@ class Statuses(StudyTest):
         np.testing.assert_array_equal(status[:4], 1)
         # the gap alone stands in for none there, and is not the least one
         self.assertEqual(step["least"], gap[:4].min())
-        np.testing.assert_array_equal(step["present"], np.where((step["CONT"] == -1)[:, None] & (np.arange(5) == 2), 2, 1))
+        np.testing.assert_array_equal(step["present"], np.where((step["CONT"] == -1)[:, None] & (np.arange(5) == 2), 3, 1))
 
 
 if __name__ == "__main__":
