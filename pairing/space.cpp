@@ -344,8 +344,8 @@ class PairerInSpace final : public detail::CellPairer {
       const Region both = intersection(old.region, view.region);
       if (double_area(both.polygon) <= overlap) continue;
       const Vec2 y = middle(both.polygon);
-      const auto candidate = [&](const View& seen) {
-        return detail::Candidate{seen.master, gap(seen, y), master(seen.master).size};
+      const auto candidate = [&](const View& other) {
+        return detail::Candidate{other.master, gap(other, y), master(other.master).size};
       };
       const bool old_wins = detail::comes_before(masters_->skin.master, candidate(old), candidate(view), e.f.size);
       const View &winner = old_wins ? old : view, &loser = old_wins ? view : old;

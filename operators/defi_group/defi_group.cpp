@@ -107,9 +107,9 @@ void add_group(Mesh& mesh, const Kind& kind, const std::string& name, const Memb
     if (alarm) inform("GROUPE_3", {{"keyword", keyword}, {"what", part(kind.name)}, {"group", name}});
     return;
   }
-  const bool nodes = kind.name == std::string_view("node");
-  fmt::print("  {} {:<24} {:>8} {}\n", part(nodes ? "node_group" : "cell_group"), name, members.size(),
-             part(nodes ? "nodes" : "cells"));
+  const bool of_nodes = kind.name == std::string_view("node");
+  fmt::print("  {} {:<24} {:>8} {}\n", part(of_nodes ? "node_group" : "cell_group"), name, members.size(),
+             part(of_nodes ? "nodes" : "cells"));
   (mesh.*kind.groups).push_back({name, members});
 }
 

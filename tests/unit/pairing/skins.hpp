@@ -48,7 +48,7 @@ inline void add_chain(Skin& skin, const Path& path, const std::vector<double>& a
   std::int32_t previous = skin.add_node(path(at[0]));
   for (std::size_t i = 1; i < at.size(); ++i) {
     const std::int32_t next = skin.add_node(path(at[i]));
-    const bool quadratic = kind == Kind::quadratic || (kind == Kind::mixed && (*random)() % 2 == 0);
+    const bool quadratic = kind == Kind::quadratic || (kind == Kind::mixed && random && (*random)() % 2 == 0);
     if (quadratic)
       skin.add_cell({previous, next, skin.add_node(path(0.5 * (at[i - 1] + at[i])))});
     else
