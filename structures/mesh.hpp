@@ -59,6 +59,7 @@ struct Mesh {
   std::vector<Group> cell_groups;
   std::vector<Group> node_groups;
   std::optional<Patches> patches;
+  std::vector<double> first_place;  ///< sums of coordinates before a field moved the nodes (DEFORME); empty: they are there
 
   std::size_t n_nodes() const { return coordinates.size() / 3; }
   std::size_t n_cells() const { return types.size(); }

@@ -73,8 +73,9 @@ class MatrixChoice {
   bool has_replaced() const { return replaced_; }
   /// The consistent one, as far as it is made.
   NewtonMatrix consistent() const { return {SolidMatrix::tangent, !waits_}; }
-  /// Whether its pivots tell: of a tangent that is made symmetric they do not.
-  bool pivots_tell() const { return traits_.symmetric && !traits_.made_symmetric; }
+  /// Whether its pivots tell: not those of a tangent that is made symmetric, nor without second derivatives that gaps have,
+  /// with which the terms of the stress are in balance. @param curves gaps of active patches have second derivatives
+  bool pivots_tell(bool curves) const { return traits_.symmetric && !traits_.made_symmetric && !(waits_ && curves); }
   /// Whether most iterations of the instant went without what made the consistent matrix unstable, in contact.
   bool leaves_unstable() const { return 2 * without_ > iterations_; }
   /// How many patches an iteration has changed, before its matrix is made. @param flows a law does: the elastic matrix is

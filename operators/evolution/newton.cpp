@@ -270,6 +270,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     const auto assemble_again = [&] { iteration == 0 ? assemble_first() : assemble(state, previous, options_.matrix); };
     const SolidMatrix asked = iteration == 0 ? options_.prediction : options_.matrix;
     std::vector<double> solution = solve_system(state, previous, asked, step, accuracy, line);
+    solved_with_ = equilibrium_.matrix();
     auto& negative = line.solution.factorisation.negative_pivots;
     const auto without_more = negative;  // resistance to creeping, of which next to nothing is left at the end
     if (creep_) {
@@ -278,6 +279,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
                choice_.note_pivots(equilibrium_.matrix(), equilibrium_.curves(state), *negative, line.constraints)) {
       assemble(state, previous, SolidMatrix::tangent);
       solution = solve_system(state, previous, SolidMatrix::tangent, step, accuracy, line);
+      solved_with_ = equilibrium_.matrix();
     }
     // a matrix that is not that of a minimum has statuses that answer to each other in any sense
     if (!negative || *negative <= line.constraints) fit_statuses(solution, step, state, accuracy, line, assemble_again);

@@ -245,6 +245,7 @@ class Newton {
   std::set<std::size_t> told_;  ///< patches that EVOLUTION_20 was about
   UnstablePath unstable_path_;
   Found found_;
+  NewtonMatrix solved_with_;                     ///< that of the last iteration
   bool unstable_told_ = false;                   ///< EVOLUTION_54 was, or EVOLUTION_75
   bool round_off_told_ = false;                  ///< EVOLUTION_69 was
   std::map<std::int32_t, double> covers_since_;  ///< zones with covers that are kept since an instant that is not accepted yet

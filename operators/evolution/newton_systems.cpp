@@ -49,15 +49,19 @@ void Newton::assemble(const StaticState& state, const StaticState& previous, Sol
 }
 
 std::optional<std::int64_t> Newton::consistent_pivots(const StaticState& previous, const StaticState& state) {
-  const SparseMatrix& matrix = equilibrium_.system().matrix();
-  if (unstable_told_ || creep_ || !choice_.has_replaced() || !choice_.pivots_tell() || matrix.elsewhere() ||
-      matrix.size() > most_to_look_again)
+  const SparseMatrix& last = equilibrium_.system().matrix();
+  if (unstable_told_ || creep_ || !choice_.has_replaced() || solved_with_ == choice_.consistent() ||
+      !choice_.pivots_tell(equilibrium_.curves(state)) || last.elsewhere() || last.size() > most_to_look_again)
     return std::nullopt;
   const NewtonMatrix present = equilibrium_.matrix();
   equilibrium_.assemble(state, previous, choice_.consistent());
-  MumpsEngine engine;
-  engine.analyse(matrix);
-  const std::optional<std::int64_t> found = engine.factorise(matrix).negative_pivots;
+  std::optional<std::int64_t> found;
+  try {
+    MumpsEngine engine({.memory = MumpsOptions::Memory::in_core});
+    engine.analyse(equilibrium_.system().matrix());
+    found = engine.factorise(equilibrium_.system().matrix()).negative_pivots;
+  } catch (const Error&) {  // no memory for a second factor: the instant is solved all the same
+  }
   equilibrium_.assemble(state, previous, present);
   return found;
 }

@@ -6,34 +6,41 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/structures/displacement.hpp"
-#include "lacon/structures/hdf5.hpp"
 
 namespace lacon {
 namespace {
 
 using Place3 = Eigen::Map<const Eigen::Vector3d>;
 
-/// Whether the last command that changed the mesh was MODI_MAILLAGE with DEFORME.
-bool is_deformed(const Base& base, const std::string& mesh) {
-  const hdf5::Reader root(base.file(mesh));
-  return root.has_attribute("keywords") && nlohmann::json::parse(root.text("keywords"), nullptr, false).contains("DEFORME");
+/// Of the size of the mesh: places that are nearer to an axis or a point have no direction and no lever arm to speak of.
+constexpr double near = 1e-2;
+
+double size_of(const Mesh& mesh) {
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
+  for (std::size_t n = 0; n < mesh.n_nodes(); ++n) {
+    const Place3 place(mesh.point(n).data());
+    low = low.cwiseMin(place), high = high.cwiseMax(place);
+  }
+  return mesh.n_nodes() > 0 ? (high - low).norm() : 0;
 }
 
 double length_of(const std::array<double, 3>& vector) { return Place3(vector.data()).norm(); }
 
 }  // namespace
 
+MovedPlaces::MovedPlaces(const Base& base, const Result& result, const Mesh& mesh)
+    : base_(base), result_(result), mesh_(mesh), size_(size_of(mesh)) {}
+
 const std::vector<double>& MovedPlaces::at(std::int64_t order) {
   if (order == order_) return coordinates_;
   order_ = order;
   coordinates_.clear();
   const auto files = result_.fields.find("DEPL");
-  if (files != result_.fields.end() && files->second.contains(order) && !is_deformed(base_, result_.mesh))
+  if (files != result_.fields.end() && files->second.contains(order) && mesh_.first_place.empty())
     coordinates_ = displaced(mesh_, base_.field(result_, "DEPL", order));
   return coordinates_;
 }
@@ -45,6 +52,7 @@ void MovedPlaces::look_at_axes(const std::string& keyword, double instant, const
     const Eigen::Vector3d from = frame.radius(Place3(before[i].data())), to = frame.radius(Place3(now[i].data()));
     const double turned = std::atan2(from.cross(to).norm(), from.dot(to));
     largest = std::max(largest, from.norm());
+    if (from.norm() < near * size_) continue;
     if (turned * from.norm() <= way) continue;
     way = turned * from.norm();
     angle = turned;
@@ -56,7 +64,7 @@ void MovedPlaces::look_at_axes(const std::string& keyword, double instant, const
 void MovedPlaces::look_at_moment(const std::string& keyword, double instant, const std::vector<double>& origin,
                                  const Places& before, const Places& now, double forces, const std::array<double, 3>& found,
                                  const std::array<double, 3>& then) {
-  double arm = 0, way = 0;
+  double arm = near * size_, way = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
     arm = std::max(arm, (Place3(before[i].data()) - Place3(origin.data())).norm());
     way = std::max(way, (Place3(now[i].data()) - Place3(before[i].data())).norm());

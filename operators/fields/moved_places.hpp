@@ -15,7 +15,7 @@ class MovedPlaces {
  public:
   using Places = std::vector<std::array<double, 3>>;
 
-  MovedPlaces(const Base& base, const Result& result, const Mesh& mesh) : base_(base), result_(result), mesh_(mesh) {}
+  MovedPlaces(const Base& base, const Result& result, const Mesh& mesh);
 
   /// Coordinates (n_nodes, 3) with the displacements of an instant; empty where it has none, and where MODI_MAILLAGE has moved
   /// the mesh by a field (DEFORME): then places are where somebody wants them.
@@ -40,6 +40,7 @@ class MovedPlaces {
   const Base& base_;
   const Result& result_;
   const Mesh& mesh_;
+  double size_;  ///< of the mesh
   std::int64_t order_ = -1;
   std::vector<double> coordinates_;
   Finding axes_, moment_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "lacon/catalog/messages.hpp"
@@ -79,6 +80,15 @@ double largest(const Mesh& mesh) {
   return most;
 }
 
+/// Whether vectors have three numbers: a mesh of the plane that is moved so is one in space, as long as it is not in the plane.
+bool asks_for_space(const Keywords& keywords) {
+  if (keywords.has("TRANSLATION")) return keywords.reals("TRANSLATION").size() == 3;
+  for (const auto& [factor, point] : {std::pair{"ROTATION", "POIN_1"}, std::pair{"SYMETRIE", "POINT"}})
+    for (const Keywords& one : keywords.factors(factor))
+      if (one.reals(point).size() == 3) return true;
+  return false;
+}
+
 bool move(Mesh& mesh, const Keywords& keywords) {
   if (keywords.has("TRANSLATION")) {
     const Vec3 by = keywords.vector("TRANSLATION", mesh.dimension);
@@ -111,6 +121,7 @@ void lie_down(Mesh& mesh, double size) {
 
 bool transform(Mesh& mesh, const Keywords& keywords) {
   const double before = largest(mesh);
+  if (asks_for_space(keywords)) mesh.dimension = 3;
   if (!move(mesh, keywords)) return false;
   lie_down(mesh, std::max(before, largest(mesh)));
   return true;

@@ -58,6 +58,7 @@ Mesh read_mesh(const hdf5::Group& root) {
   mesh.dimension = static_cast<int>(root.integer("dimension"));
   if (mesh.dimension != 2 && mesh.dimension != 3) refuse(root, part("mesh_dimensions"));
   mesh.coordinates = root.read<double>("coordinates", with_room);
+  if (root.has("first_place")) mesh.first_place = root.read<double>("first_place");
   if (mesh.coordinates.size() % 3 != 0) refuse(root, part("node_coordinates"));
   const hdf5::Group cells = root.open("cells");
   std::vector<CellType> types;
@@ -103,6 +104,7 @@ void write(const hdf5::Group& root, const Mesh& mesh) {
   root.set("name", mesh.name);
   root.set("dimension", std::int64_t{mesh.dimension});
   root.write("coordinates", mesh.coordinates, {mesh.n_nodes(), 3});
+  if (!mesh.first_place.empty()) root.write("first_place", mesh.first_place);
   const hdf5::Group cells = root.create("cells");
   std::vector<std::string> names;
   for (const catalog::CellRow& row : catalog::cells()) names.emplace_back(row.name);

@@ -326,7 +326,7 @@ FIN()
         """Moments take nodes where they are in the mesh: of a body that has turned they were those of another place in silence."""
         moment = "NOEUD=('N1', 'N2', 'N3'), NOM_CHAM='SIEF_ELNO', OPERATION='EXTRACTION', RESULTANTE='SIYY', MOMENT='DRZ', POINT=(0., 0.)"
         run = self.action(f"TOUT_ORDRE='OUI', {moment}", "assert t.values()['MOMENT_Z'] == [15.5] * 3, t")
-        self.assertEqual((run.status, run.err.count("<A> <POST_13>")), (0, 1), run.err)
+        self.assertEqual((run.status, run.err.count("<I> <POST_13>")), (0, 1), run.err)
         # forces 1, 3.5, 6 along Y at x = 0, 1, 2, moved by 1, 2, 3
         for words in ("(0, 0, 41.5), not (0, 0, 15.5)", "at the instant 1 have", "150 %"):
             self.assertIn(words, run.err)
@@ -345,7 +345,7 @@ FIN()
         radial = "INST=1.0, GROUP_NO='TOP', NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='EXTRACTION'"
         run = self.action(f"{radial}, REPERE='POLAIRE'", "")
         self.assertEqual(run.status, 0, run.err)
-        self.assertIn("<A> <MODIREPERE_6> ACTION[1]/REPERE", run.err)
+        self.assertIn("<I> <MODIREPERE_6> ACTION[1]/REPERE", run.err)
         self.assertIn("at the instant 1 have turned some by 76 degrees", run.err)
         for silent in (radial, f"{radial.replace('1.0', '0.0')}, REPERE='POLAIRE'", f"{radial}, REPERE='UTILISATEUR', ANGL_NAUT=10.0"):
             self.assertNotIn("MODIREPERE_6", self.action(silent, "").err)

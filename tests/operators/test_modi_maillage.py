@@ -63,6 +63,9 @@ class ModiMaillage(OperatorTest):
         moved = self.moved("mesh_3", TRANSLATION=[0.0, -7.0])
         self.assertEqual(self.attributes("mesh_3")["dimension"], 2)
         np.testing.assert_allclose(moved.coordinates[:, :2], NODES, atol=1e-14)
+        moved = self.moved("mesh_3", TRANSLATION=[0.0, 0.0, 5.0])  # turned first, shifted afterwards
+        self.assertEqual(self.attributes("mesh_3")["dimension"], 3)
+        np.testing.assert_array_equal(moved.coordinates[:, 2], 5)
 
     def write_tetrahedron(self):
         points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
@@ -89,7 +92,7 @@ class ModiMaillage(OperatorTest):
 
     def test_refuses_vectors_of_another_dimension_and_directions_that_are_none(self):
         self.write_tetrahedron()
-        for mesh, keywords, word in (("mesh_1", {"TRANSLATION": [1.0, 2.0, 3.0]}, "TRANSLATION"), ("mesh_2", {"TRANSLATION": [1.0, 2.0]}, "TRANSLATION"),
+        for mesh, keywords, word in (("mesh_1", {"TRANSLATION": [1.0]}, "TRANSLATION"), ("mesh_2", {"TRANSLATION": [1.0, 2.0]}, "TRANSLATION"),
                                      ("mesh_2", {"ROTATION": [{"POIN_1": [0.0, 0.0, 0.0]}]}, "DIR"),
                                      ("mesh_2", {"ROTATION": [{"POIN_1": [0.0, 0.0, 0.0], "DIR": [0.0, 0.0, 0.0]}]}, "DIR"),
                                      ("mesh_2", {"SYMETRIE": [{"POINT": [0.0, 0.0, 0.0], "AXE_1": [1.0, 0.0, 0.0], "AXE_2": [2.0, 0.0, 0.0]}]}, "AXE_1")):
@@ -97,10 +100,10 @@ class ModiMaillage(OperatorTest):
                 self.assert_refuses("KEYWORD_18", "MODI_MAILLAGE", {"MAILLAGE": concept(mesh), **keywords}, word, result=mesh, reuse=True)
 
     def test_nodes_move_by_their_displacements(self):
-        def write(identifier, mesh="mesh_1", location="NOEU", quantity="DEPL_R"):
+        def write(identifier, mesh="mesh_1", location="NOEU", quantity="DEPL_R", factor=1):
             with self.create(identifier, "field", references=[mesh], mesh=mesh, location=location, quantity=quantity, order=0, instant=0.0, name="U") as file:
                 file.attrs["components"] = np.array(["DX", "DY", "LAGS_C"], h5py.string_dtype())
-                file["support"], file["values"] = np.array([2, 6], np.int32), np.array([(0.5, -0.25, 9), (1, 2, 9)], float)
+                file["support"], file["values"] = np.array([2, 6], np.int32), factor * np.array([(0.5, -0.25, 9), (1, 2, 9)])
                 file["present"] = np.array([(1, 1, 1), (1, 0, 1)], np.uint8)
 
         write("field_4")
@@ -110,6 +113,13 @@ class ModiMaillage(OperatorTest):
         self.write_mesh("mesh_7", NODES, CELLS, GROUPS)  # a copy: its nodes are those of the field's mesh
         np.testing.assert_array_equal(self.moved("mesh_7", DEFORME={"OPTION": "TRAN", "DEPL": concept("field_4")}).coordinates[:, :2], expected)
         np.testing.assert_array_equal(self.moved(DEFORME={"OPTION": "TRAN", "DEPL": concept("field_4")}).coordinates[:, :2], expected)
+        write("field_8", mesh="mesh_7", factor=-1)  # back, up to round-off: what looks at places (POST_13) can tell
+        for field, is_there in (("field_8", False), ("field_8", True)):
+            with h5py.File(self.path("mesh_7")) as file:
+                self.assertIs("first_place" in file, not is_there)
+            self.moved("mesh_7", DEFORME={"OPTION": "TRAN", "DEPL": concept(field)})
+        with h5py.File(self.path("mesh_7")) as file:
+            self.assertIn("first_place", file)
         self.write_tetrahedron()
         write("field_5", mesh="mesh_2")
         write("field_6", quantity="GEOM_R")

@@ -17,9 +17,9 @@ def holds(file):
 # ---------------------------------------------------------------------------------------------------- mesh
 
 
-def keywords(file):
-    """Those of the command that wrote a concept last."""
-    return json.loads(text(file.attrs["keywords"])) if "keywords" in file.attrs else {}
+def is_deformed(mesh):
+    """Whether a field has moved its nodes, and none has brought them back (Mesh::first_place)."""
+    return "first_place" in mesh
 
 
 def dimension(mesh):

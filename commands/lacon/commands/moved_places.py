@@ -4,6 +4,7 @@ operators/fields/moved_places.hpp."""
 from ..core.late import numpy
 from . import axes
 
+_near = 1e-2   # of the size of the mesh: what is nearer to an axis or a point has no direction and no lever arm to speak of
 _least = 0.05  # share of the largest radius or lever arm by which places have moved before that is told
 
 
@@ -12,6 +13,7 @@ class MovedPlaces:
 
     def __init__(self, call):
         self.call = call
+        self._size = None  # of the mesh
         self._axes = self._moment = None  # (share, path, values of the message)
 
     def displacements(self, action, instant, mesh, nodes):
@@ -20,6 +22,9 @@ class MovedPlaces:
         field = action["RESULTAT"].field("DEPL", instant["NUME_ORDRE"][1]) if "RESULTAT" in action else None
         if field is None or mesh.is_deformed():
             return None
+        if self._size is None:
+            places = numpy.array(mesh.getCoordinates().getValues()).reshape(-1, 3)
+            self._size = float(numpy.linalg.norm(places.max(axis=0) - places.min(axis=0)))
         values, _ = field.on_nodes(mesh.getNumberOfNodes())
         made = numpy.zeros((len(nodes), 3))
         for k, name in enumerate(("DX", "DY", "DZ")):
@@ -32,7 +37,7 @@ class MovedPlaces:
         before, now = axes.radii(points, axis), axes.radii(points + moved, axis)
         angle = numpy.arctan2(numpy.linalg.norm(numpy.cross(before, now), axis=1), (before * now).sum(axis=1))
         radius = numpy.linalg.norm(before, axis=1)
-        way, largest = angle * radius, radius.max()
+        way, largest = numpy.where(radius < _near * self._size, 0, angle * radius), radius.max()
         if way.max() > (self._axes[0] if self._axes else _least) * largest:
             self._axes = (way.max() / largest, path, {**_at(instant), "angle": f"{numpy.degrees(angle[way.argmax()]):.3g}"})
 
@@ -40,10 +45,11 @@ class MovedPlaces:
         """The moment `found` of forces (n, 3) with these arms (n, 3), which have moved by `moved` (n, 3)."""
         then = found + numpy.cross(moved, forces).sum(axis=0)
         arm, way = (float(numpy.linalg.norm(vectors, axis=1).max()) for vectors in (arms, moved))
+        arm = max(arm, _near * self._size)
         # a moment below a thousandth of what these forces could make is none, and its change is round-off
         told = max(0.05 * max(numpy.linalg.norm(found), numpy.linalg.norm(then)), 1e-3 * abs(forces).sum() * max(arm, way))
         if way > (self._moment[0] if self._moment else _least) * arm and numpy.linalg.norm(then - found) > told:
-            share = way / arm if arm else numpy.inf
+            share = way / arm
             self._moment = (share, path, {**_at(instant), "share": f"{100 * share:.3g}", "found": _words(found), "then": _words(then)})
 
     def tell(self):

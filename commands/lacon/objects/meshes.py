@@ -41,8 +41,8 @@ class Mesh(Concept):
         return self._read(contents.group_names, kind)
 
     def is_deformed(self):
-        """Whether MODI_MAILLAGE with DEFORME was the last command that changed it."""
-        return "DEFORME" in self._read(contents.keywords)
+        """Whether nodes are where MODI_MAILLAGE with DEFORME has moved them."""
+        return self._read(contents.is_deformed)
 
     def nodes_of(self, cells):
         """Nodes of cells, one cell after the other."""
