@@ -9,10 +9,9 @@
 namespace lacon {
 namespace {
 
-constexpr double hardly_changed = 1e-10;  // of forces and imposed displacements
-constexpr int tries = 3;                  // iterations that have to make forces smaller than where they began
-constexpr int iterations_given =
-    15;  // that are given to them, for from a near start a few are enough; more while forces go on falling
+constexpr double round_off = 1e-10;  // of forces and imposed displacements
+constexpr int tries = 3;             // iterations that have to make forces smaller than where they began
+constexpr int most = 15;  // that are given to them, for from a near start a few are enough; more while forces go on falling
 constexpr double falls = 0.75;  // by this factor an iteration, as they do near a limit point from wherever it begins
 
 /// Figures of an extrapolation of some numbers: what it misses, and how far they go.
@@ -23,8 +22,8 @@ struct Miss {
     moved += (found - before) * (found - before);
     size += found * found;
   }
-  bool moves() const { return moved > hardly_changed * hardly_changed * size; }
-  bool is_near() const { return missed <= (moves() ? moved : hardly_changed * hardly_changed * size); }
+  bool moves() const { return moved > round_off * round_off * size; }
+  bool is_near() const { return missed <= (moves() ? moved : round_off * round_off * size); }
 };
 
 }  // namespace
@@ -37,7 +36,7 @@ double goes_on(std::span<const double> before, std::span<const double> last, std
     was += change * change;
     will_be += next_change * next_change;
   }
-  return std::abs(product) > hardly_changed * std::sqrt(was) * std::sqrt(will_be) ? product : 0;
+  return std::abs(product) > round_off * std::sqrt(was) * std::sqrt(will_be) ? product : 0;
 }
 
 void Prediction::note(double start, const KnownState& previous, KnownState solved, bool led) {
@@ -67,7 +66,7 @@ void Prediction::mislead() {
 
 bool Prediction::leads_astray(int iterations, double residual, double before, double at_start) {
   if (residual < falls * before) return false;
-  return iterations >= iterations_given || (iterations >= tries && !(residual < at_start));
+  return iterations >= most || (iterations >= tries && !(residual < at_start));
 }
 
 std::optional<std::pair<double, double>> Prediction::last_motion() const {
