@@ -50,7 +50,8 @@ void Newton::assemble(const StaticState& state, const StaticState& previous, Sol
 
 std::optional<std::int64_t> Newton::consistent_pivots(const StaticState& previous, const StaticState& state) {
   const SparseMatrix& last = equilibrium_.system().matrix();
-  if (unstable_told_ || creep_ || !choice_.has_replaced() || solved_with_ == choice_.consistent() ||
+  // not in space: columns that flow had a negative pivot too many at one instant, and whether that is true is not known
+  if (problem_.dimension == 3 || unstable_told_ || creep_ || !choice_.has_replaced() || solved_with_ == choice_.consistent() ||
       !choice_.pivots_tell(equilibrium_.curves(state)) || last.elsewhere() || last.size() > most_to_look_again)
     return std::nullopt;
   const NewtonMatrix present = equilibrium_.matrix();
