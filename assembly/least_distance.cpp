@@ -6,7 +6,7 @@
 namespace lacon {
 namespace {
 
-constexpr double nothing_left = 1e-12;
+constexpr double round_off = 1e-12;
 
 /// Columns as orthonormal ones times a triangle; they come and go one at a time.
 class Orthonormal {
@@ -22,7 +22,7 @@ class Orthonormal {
       along += part;
     }
     const double left = rest.norm();
-    if (left <= nothing_left * column.norm()) return false;
+    if (left <= round_off * column.norm()) return false;
     r_.col(size_).head(size_) = along;
     r_(size_, size_) = left;
     q_.col(size_++) = rest / left;
@@ -63,8 +63,7 @@ class NonNegative {
       const Eigen::VectorXd slope = matrix_.transpose() * (side_ - matrix_ * x_);
       Eigen::Index next = -1;
       for (Eigen::Index i = 0; i < slope.size(); ++i)
-        if (!is_free_[i] && !refused[i] && slope[i] > nothing_left * matrix_.col(i).norm() &&
-            (next < 0 || slope[i] > slope[next]))
+        if (!is_free_[i] && !refused[i] && slope[i] > round_off * matrix_.col(i).norm() && (next < 0 || slope[i] > slope[next]))
           next = i;
       if (next < 0) break;
       if (descend(next))
@@ -94,7 +93,7 @@ class NonNegative {
       for (Eigen::Index k = 0; k < best.size(); ++k) {
         double& value = x_[free_[k]];
         value += part * (best[k] - value);
-        if (part < 1 && best[k] <= 0 && value <= nothing_left * x_.maxCoeff()) value = 0;
+        if (part < 1 && best[k] <= 0 && value <= round_off * x_.maxCoeff()) value = 0;
       }
       if (part == 1) return true;
       for (std::size_t k = free_.size(); k-- > 0;)
@@ -132,7 +131,7 @@ std::optional<LeastDistance> least_distance(const Eigen::MatrixXd& rows, const E
   const Eigen::VectorXd side = Eigen::VectorXd::Unit(n + 1, n);
   const Eigen::VectorXd found = NonNegative(matrix, side).solve();
   const double left = 1 - missing.dot(found);  // 0 where the sides have no point in common
-  if (left <= nothing_left * (1 + found.sum())) return std::nullopt;
+  if (left <= round_off * (1 + found.sum())) return std::nullopt;
   const Eigen::VectorXd forces = unit / left * found;
   return LeastDistance{aim + rows.transpose() * forces, forces};
 }

@@ -25,18 +25,18 @@ constexpr double operations_of_a_solution = 40, operations_in_a_block = 2.5;
 /// Errors of a Schur complement over that of its factor.
 constexpr double blur = 2;
 /// Of a motion that is looked for in a right side of any directions: what is left of it where its direction is unlucky.
-constexpr double least_share_of_motion = 1e-2;
+constexpr double least_share = 1e-2;
 constexpr int least_iterations = 8;
 /// Rows that a thread compares at a time.
-constexpr std::size_t rows_compared = 8192;
+constexpr std::size_t rows_together = 8192;
 
 /// The largest change of the stiffness from `base` on, of a row's and a column's diagonal; infinite where the equations differ.
 /// Entries that either of the patterns lacks are zeros in it: bodies that slide take more couples in.
 double stiffness_change(const SparseMatrix& matrix, const SparseMatrix& base, std::int64_t first_multiplier) {
   if (matrix.size() != base.size()) return INFINITY;
   const std::vector<double> diagonal = base.diagonals();
-  std::vector<double> largest(n_loop_blocks(first_multiplier, rows_compared), 0.0);  // of each block, squared
-  parallel_for(first_multiplier, rows_compared, [&](const LoopBlock& block) {
+  std::vector<double> largest(n_loop_blocks(first_multiplier, rows_together), 0.0);  // of each block, squared
+  parallel_for(first_multiplier, rows_together, [&](const LoopBlock& block) {
     for (std::size_t row = block.first; row < block.last; ++row) {
       std::int64_t k = matrix.rows()[row], j = base.rows()[row];
       const std::int64_t last_k = matrix.rows()[row + 1], last_j = base.rows()[row + 1];
@@ -175,7 +175,7 @@ bool SaddlePointSolver::holds_all(const SparseMatrix& matrix, const Precondition
   std::vector<double> force = preconditioner.weak_motion();
   for (std::size_t i = 0; i < force.size(); ++i) force[i] /= scale[i] * scale[i];
   const double share = std::min(1.0, preconditioner.condition() / (blur * factor_.error));
-  const double goal = least_share_of_motion * share * norm(force, true);
+  const double goal = least_share * share * norm(force, true);
   const GmresResult found = gmres([&](std::span<const double> x, std::span<double> y) { matrix.multiply(x, y); },
                                   [&](std::span<double> x) { preconditioner.apply(x); }, scale, force,
                                   {.goal = goal, .iterations = most_iterations()});

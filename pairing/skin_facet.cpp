@@ -12,7 +12,7 @@ Vec3 point(const Surface& surface, std::int32_t node) {
 }
 
 constexpr int edge_pieces = 4;  // of a curved edge
-constexpr double hardly_bent = 1e-12;
+constexpr double round_off = 1e-12;
 
 /// Whether the middle node m of an edge lies between its ends, and beside the line through them by no more than `bulge` of its
 /// length.
@@ -77,12 +77,12 @@ Facet facet(const Surface& surface, std::size_t cell, double straight, bool in_p
     if (f.order < 2) continue;
     const bool is_one_line = is_straight(a, b, f.nodes[nv + i], straight);
     f.straight = f.straight && is_one_line;
-    f.plane = f.plane && is_straight(a, b, f.nodes[nv + i], hardly_bent);
+    f.plane = f.plane && is_straight(a, b, f.nodes[nv + i], round_off);
     f.whole_edge[static_cast<std::size_t>(i)] = is_one_line && !in_pieces;
   }
   const double length = norm(area);
   if (length > 0) f.normal = (1 / length) * area;
-  for (int i = 0; i < row.n_nodes; ++i) f.plane = f.plane && std::abs(dot(f.nodes[i], f.normal)) <= hardly_bent * f.size;
+  for (int i = 0; i < row.n_nodes; ++i) f.plane = f.plane && std::abs(dot(f.nodes[i], f.normal)) <= round_off * f.size;
   f.affine = is_affine(f.x, f.normal);
   f.distortion = f.affine ? 0 : distortion(f.x, f.family, f.normal);
   return f;

@@ -53,7 +53,7 @@ class Environment {
 };
 
 /// A program with its standard streams. @return its process; negative: there can be no more
-pid_t spawned(char* const* words, char* const* environment, int input, int output) {
+pid_t start(char* const* words, char* const* environment, int input, int output) {
   const pid_t process = vfork();  // fork() would copy the tables of all the memory that a large study has
   if (process == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);  // mpirun ends its ranks
@@ -88,7 +88,7 @@ Companion::Companion(std::vector<std::string> command) {
     environment.set("OMPI_ALLOW_RUN_AS_ROOT=1");
     environment.set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1");
   }
-  process_ = spawned(words.data(), environment.words(), to[1], from[1]);
+  process_ = start(words.data(), environment.words(), to[1], from[1]);
   if (process_ < 0)  // its answer is an end at once
     ended_ = part("cannot_be_started") + ": " + std::generic_category().message(errno);
   close(to[1]);

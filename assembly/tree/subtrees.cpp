@@ -9,7 +9,7 @@ namespace lacon {
 namespace {
 
 /// Smaller subtrees are not shared out but added to others, of all the work; and what another step down has to win.
-constexpr double least_subtree = 1e-3, least_gain = 0.02;
+constexpr double least_share = 1e-3, least_gain = 0.02;
 
 /// The elimination tree of vertices, numbered in the order of elimination.
 struct Tree {
@@ -122,7 +122,7 @@ class Cutter {
 
  private:
   std::int32_t size() const { return static_cast<std::int32_t>(tree_.vertex.size()); }
-  bool is_small(std::int32_t root) const { return below_[root] < least_subtree * tree_.counts.flops; }
+  bool is_small(std::int32_t root) const { return below_[root] < least_share * tree_.counts.flops; }
 
   void add(std::int32_t root) {
     if (is_small(root)) {

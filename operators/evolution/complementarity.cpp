@@ -9,17 +9,17 @@
 namespace lacon {
 namespace {
 
-constexpr int changes_in_vain = 3;          // changes of all wrong pairs that make them no fewer
-constexpr Eigen::Index most_changes = 100;  // changes, and two of each pair: a P-matrix that asks for more is a curiosity,
-constexpr double work = 1e11;  // operations of these: where there are many pairs, statuses are found by iterations as well
-constexpr double least_diagonal = 1e-10;  // of a diagonal, where 1 is usual: what resists less is loose
-constexpr double singular = 1e-9;         // reciprocal condition, behind scaling by the diagonal
+constexpr int patience = 3;         // changes of all wrong pairs that make them no fewer
+constexpr Eigen::Index most = 100;  // changes, and two of each pair: a P-matrix that asks for more is a curiosity,
+constexpr double work = 1e11;       // operations of these: where there are many pairs, statuses are found by iterations as well
+constexpr double least = 1e-10;     // of a diagonal, where 1 is usual: what resists less is loose
+constexpr double singular = 1e-9;   // reciprocal condition, behind scaling by the diagonal
 
 /// z of the pairs in which it is not zero, (pairs), or nothing where the matrix lets them go.
 std::optional<Eigen::VectorXd> solution_of(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& q,
                                            const std::vector<Eigen::Index>& pairs) {
   const Eigen::VectorXd diagonal = matrix.diagonal()(pairs);
-  if (!(diagonal.minCoeff() > least_diagonal)) return std::nullopt;
+  if (!(diagonal.minCoeff() > least)) return std::nullopt;
   const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
   const Eigen::PartialPivLU<Eigen::MatrixXd> factor(scale.asDiagonal() * matrix(pairs, pairs) * scale.asDiagonal());
   if (!(factor.rcond() > singular)) return std::nullopt;
@@ -30,7 +30,7 @@ std::optional<Eigen::VectorXd> solution_of(const Eigen::MatrixXd& matrix, const 
 
 std::optional<Eigen::VectorXd> solve_complementarity(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& q, double digits) {
   const Eigen::Index n = q.size();
-  const auto last = most_changes + static_cast<Eigen::Index>(std::min(2.0 * static_cast<double>(n), work / std::pow(n, 3)));
+  const auto last = most + static_cast<Eigen::Index>(std::min(2.0 * static_cast<double>(n), work / std::pow(n, 3)));
   std::vector<bool> has_z(static_cast<std::size_t>(n), false);
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   int in_vain = 0;
@@ -50,7 +50,7 @@ std::optional<Eigen::VectorXd> solve_complementarity(const Eigen::MatrixXd& matr
     if (wrong.empty()) return z;
     in_vain = wrong.size() < fewest ? 0 : in_vain + 1;
     fewest = std::min(fewest, wrong.size());
-    if (in_vain > changes_in_vain) wrong = {wrong.back()};
+    if (in_vain > patience) wrong = {wrong.back()};
     for (const Eigen::Index i : wrong) has_z[static_cast<std::size_t>(i)] = !has_z[static_cast<std::size_t>(i)];
   }
   return std::nullopt;

@@ -10,7 +10,7 @@
 namespace lacon {
 namespace {
 
-constexpr double more_resistance = 4;            // of the resistance, where it is too little
+constexpr double more = 4;                       // of the resistance, where it is too little
 constexpr double eased = 0.3, most_eased = 0.1;  // what is left of it where the residual falls, and where it falls as steeply
 constexpr double grown = 2;                      // at most, where the residual grows
 
@@ -72,7 +72,7 @@ double Creep::over_cells(std::span<const double> solution) const {
 }
 
 void Creep::raise() {
-  factor_ *= more_resistance;
+  factor_ *= more;
   raised_ = true;
 }
 

@@ -8,7 +8,7 @@
 namespace lacon {
 namespace {
 
-constexpr double is_dependent = 1e-9;  // of the largest coefficient: what is left of a row that is a sum of others
+constexpr double round_off = 1e-9;  // of the largest coefficient: what is left of a row that is a sum of others
 
 /// Whether each row is independent for having an unknown to itself, or one that only such rows share besides.
 std::vector<bool> with_an_unknown_of_their_own(std::span<const FreeRow> rows) {
@@ -76,7 +76,7 @@ std::vector<DependentRelation> dependent_relations(std::span<const FreeRow> rows
       reduced.row.erase(other.pivot);
       note(other.row);
     }
-    std::erase_if(reduced.row, [&](const auto& entry) { return std::abs(entry.second) <= is_dependent * scale; });
+    std::erase_if(reduced.row, [&](const auto& entry) { return std::abs(entry.second) <= round_off * scale; });
     if (reduced.row.empty()) {
       DependentRelation& follows = dependent.emplace_back(DependentRelation{r, {}});
       for (const auto& [other, factor] : reduced.origin)

@@ -17,7 +17,7 @@ namespace lacon {
 namespace {
 
 /// Statuses and residuals go round with periods of two or three iterations: two whole rounds of the longer one.
-constexpr std::size_t most_named = 6;
+constexpr std::size_t most = 6;
 
 /// Pressure over the modulus of elasticity.
 constexpr double beyond_all_solids = 0.5;
@@ -53,7 +53,7 @@ void FailedStep::begin(double /*instant*/) { iterates_.clear(); }
 
 void FailedStep::iterate(double /*instant*/, const IterationReport& report) {
   if (!std::isfinite(report.maxi) || report.converged()) return;  // numbers that nobody can draw, or that nobody asks for
-  if (iterates_.size() == most_named) iterates_.pop_front();
+  if (iterates_.size() == most) iterates_.pop_front();
   iterates_.push_back({.iteration = report.iteration,
                        .rela = report.rela,
                        .maxi = report.maxi,
@@ -82,7 +82,7 @@ void FailedStep::failed(double instant, const Error& error) {
   // an iteration that cannot be judged (a cell is none any more) has moved the bodies all the same
   const std::vector<double>& moved = present_.state.displacement;
   if (kept.empty() || moved == kept.back().displacement || !is_finite(moved)) return;
-  if (kept.size() == most_named) kept.pop_front();
+  if (kept.size() == most) kept.pop_front();
   kept.push_back({.iteration = kept.back().iteration + 1,
                   .rela = unknown,
                   .maxi = unknown,

@@ -7,7 +7,7 @@ namespace lacon {
 namespace {
 
 constexpr double small_enough = 0.1;  // of the power at the start, as RESI_LINE_RELA
-constexpr double least_part = 0.1;    // of the last part
+constexpr double least = 0.1;         // of the last part
 constexpr int evaluations = 6;
 
 }  // namespace
@@ -17,7 +17,7 @@ double part_of_increment(double start, const std::function<double(double)>& powe
   for (int count = 1;; ++count) {
     const double found = power(part);
     if (!(start > 0) || found >= -small_enough * start || count == evaluations) return part;
-    part *= std::max(start / (start - found), least_part);
+    part *= std::max(start / (start - found), least);
   }
 }
 

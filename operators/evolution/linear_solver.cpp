@@ -17,9 +17,9 @@
 namespace lacon {
 namespace {
 
-constexpr int most_iterations = 500;              // where NMAX_ITER does not say
-constexpr double round_off_of_solutions = 1e-16;  // of a solution, of its right side
-constexpr double direct_residual = 1e-6;          // of a factor that stands in for iterations: RESI_RELA is theirs
+constexpr int most_iterations = 500;      // where NMAX_ITER does not say
+constexpr double round_off = 1e-16;       // of a solution, of its right side
+constexpr double direct_residual = 1e-6;  // of a factor that stands in for iterations: RESI_RELA is theirs
 
 int number_in(const char* variable, int otherwise) {
   const char* const wanted = std::getenv(variable);
@@ -132,7 +132,7 @@ std::unique_ptr<Engine> engine_of(const Keywords& solver, const Base& base, cons
   if (method != "MUMPS") inform("EVOLUTION_24", {{"method", method}});
   MumpsOptions options = direct_options(solver, base);
   if (asked == "AUTO") options.residual_tolerance = direct_residual;
-  if (const double asked_for = options.residual_tolerance; asked_for >= 0 && asked_for < round_off_of_solutions)
+  if (const double asked_for = options.residual_tolerance; asked_for >= 0 && asked_for < round_off)
     fail("SOLVER_19", {{"value", fmt::format("{:g}", asked_for)}});
   return std::make_unique<MumpsEngine>(options);
 }

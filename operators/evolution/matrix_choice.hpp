@@ -71,11 +71,9 @@ class MatrixChoice {
   bool note_pivots(NewtonMatrix present, bool curves, std::int64_t negative, std::int64_t constraints);
   /// Whether a consistent matrix of the instant was unstable, and another one took its place.
   bool has_replaced() const { return replaced_; }
-  /// The consistent one, as far as it is made.
-  NewtonMatrix consistent() const { return {SolidMatrix::tangent, !waits_}; }
-  /// Whether its pivots tell: not those of a tangent that is made symmetric, nor without second derivatives that gaps have,
-  /// with which the terms of the stress are in balance. @param curves gaps of active patches have second derivatives
-  bool pivots_tell(bool curves) const { return traits_.symmetric && !traits_.made_symmetric && !(waits_ && curves); }
+  /// Whether the pivots of the consistent one tell at an equilibrium: not those of a tangent that is made symmetric. Not in
+  /// space: columns that flow had a negative pivot too many at one instant, and whether that is true is not known.
+  bool pivots_tell() const { return traits_.symmetric && !traits_.made_symmetric && !traits_.in_space; }
   /// Whether most iterations of the instant went without what made the consistent matrix unstable, in contact.
   bool leaves_unstable() const { return 2 * without_ > iterations_; }
   /// How many patches an iteration has changed, before its matrix is made. @param flows a law does: the elastic matrix is

@@ -12,11 +12,11 @@
 namespace lacon {
 namespace {
 
-constexpr double singular_complement = 1e-3;  // of the complement, which is 1 where covers stay
-constexpr std::size_t few = 12;               // terms
-constexpr double enough = 1e-4;               // of the motion, that GMRES may leave: iterations of Newton's method gain as much
+constexpr double singular = 1e-3;  // of the complement, which is 1 where covers stay
+constexpr std::size_t few = 12;    // terms
+constexpr double enough = 1e-4;    // of the motion, that GMRES may leave: iterations of Newton's method gain as much
 constexpr int iterations = 15;
-constexpr double hardly_solved = 0.3;  // of it: what is left is no better than nothing
+constexpr double in_vain = 0.3;  // of it: what is left is no better than nothing
 
 using Entries = std::vector<std::pair<std::int64_t, double>>;
 
@@ -54,7 +54,7 @@ std::int64_t follow_few(std::span<const MovingCover> covers, double size,
     motion[k] = product(covers[static_cast<std::size_t>(k)].row, x);
   }
   const Eigen::FullPivLU<Eigen::MatrixXd> factor(complement);
-  if (!(factor.rcond() > singular_complement)) return 0;
+  if (!(factor.rcond() > singular)) return 0;
   const Eigen::VectorXd by = factor.solve(motion);
   for (Eigen::Index k = 0; k < n; ++k)
     for (std::size_t i = 0; i < x.size(); ++i) x[i] -= by[k] * answers[static_cast<std::size_t>(k)][i];
@@ -82,7 +82,7 @@ void follow_many(std::span<const MovingCover> covers, double size, const std::fu
   };
   const GmresResult found = gmres(multiply, [](std::span<double>) {}, alike, motion,
                                   {.goal = enough * std::sqrt(squares), .iterations = iterations, .cycles = 1});
-  if (!(found.residual < hardly_solved * std::sqrt(squares))) return;
+  if (!(found.residual < in_vain * std::sqrt(squares))) return;
   // what the last product was made of: it says what is left
   for (std::size_t i = 0; i < x.size(); ++i) x[i] -= answer[i];
 }

@@ -20,7 +20,7 @@ constexpr double near_round_off = 1e-9;
 constexpr int enough_to_leave = 60;  // iterations: from an equilibrium that is unstable to the next one
 constexpr int settled = 4;           // iterations without a change of status after which a ratio is that of the residual alone
 constexpr int settled_quickly = 3;   // likewise, for an order
-constexpr double inside = 1, right_through = 10;  // sizes of a patch: what coarse patches overlap by stays below the one
+constexpr double inside = 1, through = 10;  // sizes of a patch: what coarse patches overlap by stays below the one
 
 bool presses_nowhere(const StaticState& state) {
   return std::ranges::all_of(state.patches.lambda, [](double pressure) { return pressure == 0; });
@@ -61,7 +61,7 @@ void Newton::fail_if_passed_through(double instant, const StaticState& state) co
   for (std::size_t zone = 0; zone < now.size(); ++zone) {
     const ContactZone& names = problem_.contact->zones[zone];
     std::optional<GoneThrough> gone;
-    if (now[zone] > right_through && depths_before_[zone] < inside) {
+    if (now[zone] > through && depths_before_[zone] < inside) {
       const auto deepest = contact()->pierced(static_cast<std::int32_t>(zone), state.patches, true);
       gone = {problem_.mesh.patches->cells[deepest->patch].front(), now[zone]};
     } else if (std::ranges::none_of(names.patches, presses)) {

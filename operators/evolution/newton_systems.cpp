@@ -21,13 +21,12 @@
 namespace lacon {
 namespace {
 
-constexpr int most_rests = 4;                         // in an instant: how often bodies are led to patches by their load
-constexpr int most_flung = 6;                         // in an iteration: how often bodies are held that it flings
-constexpr int most_rounds = 6;                        // of statuses in an iteration
-constexpr int most_raised = 12;                       // in an iteration: how often the resistance to creeping is
-constexpr std::int64_t most_to_look_again = 100'000;  // equations: a factor beside that of the iterations
-constexpr double furthest = 0.5;                      // cells, by which an iteration may creep
-constexpr double hardly_less = 0.8;                   // of a motion: what is driven by gaps heeds no resistance
+constexpr int most_rests = 4;        // in an instant: how often bodies are led to patches by their load
+constexpr int most_flung = 6;        // in an iteration: how often bodies are held that it flings
+constexpr int most_rounds = 6;       // of statuses in an iteration
+constexpr int most_raised = 12;      // in an iteration: how often the resistance to creeping is
+constexpr double furthest = 0.5;     // cells, by which an iteration may creep
+constexpr double hardly_less = 0.8;  // of a motion: what is driven by gaps heeds no resistance
 constexpr double of_a_round = 1e-6;  // of what the solution before leaves of its right side, iterations may leave
 // Of what resists most: motions that are resisted by less, where bodies are flung. Rows of contact that say the same of a rigid
 // body differ by its strains, and that is all that is left to resist.
@@ -49,13 +48,14 @@ void Newton::assemble(const StaticState& state, const StaticState& previous, Sol
 }
 
 std::optional<std::int64_t> Newton::consistent_pivots(const StaticState& previous, const StaticState& state) {
+  constexpr std::int64_t most = 100'000;  // equations
+  constexpr NewtonMatrix consistent;
   const SparseMatrix& last = equilibrium_.system().matrix();
-  // not in space: columns that flow had a negative pivot too many at one instant, and whether that is true is not known
-  if (problem_.dimension == 3 || unstable_told_ || creep_ || !choice_.has_replaced() || solved_with_ == choice_.consistent() ||
-      !choice_.pivots_tell(equilibrium_.curves(state)) || last.elsewhere() || last.size() > most_to_look_again)
+  if (unstable_told_ || creep_ || !choice_.pivots_tell() || !choice_.has_replaced() || solved_with_ == consistent ||
+      last.elsewhere() || last.size() > most)
     return std::nullopt;
   const NewtonMatrix present = equilibrium_.matrix();
-  equilibrium_.assemble(state, previous, choice_.consistent());
+  equilibrium_.assemble(state, previous, consistent);
   std::optional<std::int64_t> found;
   try {
     MumpsEngine engine({.memory = MumpsOptions::Memory::in_core});

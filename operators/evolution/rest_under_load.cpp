@@ -8,10 +8,10 @@
 namespace lacon {
 namespace {
 
-constexpr double no_work = 1e-6;       // of what all loads could do: round-off, or forces that iterations leave
-constexpr double no_row = 1e-9;        // of a unit motion: what it changes a gap by
-constexpr double far_off = 1e3;        // of the reach of motions that rest: where the load would lead bodies that nothing stops
-constexpr double reach_at_rest = 1e3;  // of the widest gap and patch
+constexpr double no_work = 1e-6;  // of what all loads could do: round-off, or forces that iterations leave
+constexpr double no_row = 1e-9;   // of a unit motion: what it changes a gap by
+constexpr double far = 1e3;       // of the reach of motions that rest: where the load would lead bodies that nothing stops
+constexpr double reach = 1e3;     // of the widest gap and patch
 
 }  // namespace
 
@@ -56,9 +56,9 @@ std::vector<std::size_t> patches_under_load(const ContactState& contact, const P
   }
   rows.conservativeResize(std::ssize(stopping), Eigen::NoChange);
   bounds.conservativeResize(std::ssize(stopping));
-  const Eigen::VectorXd aim = far_off * reach_at_rest * widest * work.normalized();
+  const Eigen::VectorXd aim = far * reach * widest * work.normalized();
   const auto rest = least_distance(rows, bounds, aim);
-  if (!rest || rest->point.norm() > reach_at_rest * widest) return {};
+  if (!rest || rest->point.norm() > reach * widest) return {};
   const Eigen::VectorXd left = rows * rest->point - bounds;
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < stopping.size(); ++i)

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* record_name = "restart.h5";
-constexpr int times_its_cost = 200;  // times as long as a record takes, before the next one
+constexpr int patience = 200;  // times as long as a record takes, before the next one
 
 void write_message(const hdf5::Group& group, const std::vector<Message>& messages) {
   std::vector<std::string> severities, ids, texts, advices;
@@ -214,7 +214,7 @@ void RestartRecord::accept(const SolvedInstant& solved) {
   stored_base_ = number;
   std::error_code error;
   if (before > 0 && before != number) fs::remove(base_file(before), error);
-  if (!std::getenv("LACON_RESTART_ALWAYS")) next_ = clock::now() + times_its_cost * (clock::now() - start);
+  if (!std::getenv("LACON_RESTART_ALWAYS")) next_ = clock::now() + patience * (clock::now() - start);
 }
 
 }  // namespace lacon

@@ -28,8 +28,7 @@ constexpr double same_ratio = 0.05;  // of the logarithm of ratios
 
 /// Why no cut helps, or nothing. Where a step and its parts have residuals that fall by the same ratio, a part of them has
 /// 1 / cut_into of the whole's after as many iterations.
-std::optional<std::string> cut_in_vain(const FailureNature& now, const FailureNature& before, const StepCut& action,
-                                       int level) {
+std::optional<std::string> in_vain(const FailureNature& now, const FailureNature& before, const StepCut& action, int level) {
   if (!now.depends_on_step) return part("fails_at_any_length");
   if (!now.ratio || !before.ratio || std::abs(std::log(*now.ratio / *before.ratio)) > same_ratio) return std::nullopt;
   if (now.excess <= std::pow(action.cut_into, action.cut_levels - level)) return std::nullopt;
@@ -51,7 +50,7 @@ std::optional<double> cut(const StepCut& action, const Error& error, const Failu
   if (error.message().severity != 'S' || is_of_the_machine(error.message()) || !action.cut || level >= action.cut_levels ||
       part < std::max(action.smallest, smallest))
     return std::nullopt;
-  if (const auto reason = cut_in_vain(nature_of(error), before, action, level)) {
+  if (const auto reason = in_vain(nature_of(error), before, action, level)) {
     tell(message("EVOLUTION_19", {{"instant", fmt::format("{:.9g}", to)}, {"reason", *reason}}));
     return std::nullopt;
   }

@@ -18,12 +18,12 @@ Vec3 point_of(const Mesh& mesh, std::int32_t node) {
 }
 
 /// Size and middle of a slave cell, by its vertices.
-struct SizeAndMiddle {
+struct Extent {
   double size = 0;
   Vec3 middle;
 };
 
-SizeAndMiddle extent(const Mesh& mesh, std::int32_t cell) {
+Extent extent(const Mesh& mesh, std::int32_t cell) {
   const auto nodes = mesh.cells[static_cast<std::size_t>(cell)];
   const auto n = static_cast<std::size_t>(mesh.row(static_cast<std::size_t>(cell)).n_vertices);
   const Vec3 origin = point_of(mesh, nodes[0]);
@@ -46,7 +46,7 @@ std::vector<std::size_t> order_of_cuts(const Mesh& mesh, std::span<const Slave> 
   if (of_body.size() == slaves.size()) return order;
   Vec3 middle{};
   double size = 0;
-  std::vector<SizeAndMiddle> extents;
+  std::vector<Extent> extents;
   for (const Slave& slave : slaves) {
     extents.push_back(extent(mesh, slave.cell));
     size += extents.back().size;
@@ -54,7 +54,7 @@ std::vector<std::size_t> order_of_cuts(const Mesh& mesh, std::span<const Slave> 
   }
   middle = middle / size;
   const auto before = [&](std::size_t a, std::size_t b) {
-    const SizeAndMiddle &one = extents[a], &other = extents[b];
+    const Extent &one = extents[a], &other = extents[b];
     const Vec3 apart = other.middle - one.middle;
     const double far = norm(one.middle - middle), farther = norm(other.middle - middle);
     for (const auto& [mine, its, unit] : {std::tuple{one.size, other.size, one.size + other.size},

@@ -22,11 +22,11 @@ using Nodes = std::vector<std::int32_t>;
 /// Diagonals whose squared lengths differ by less, relatively, are equally long.
 constexpr double equal_lengths = 1e-9;
 
-using Ends = std::pair<std::int32_t, std::int32_t>;
+using Edge = std::pair<std::int32_t, std::int32_t>;
 
 /// The vertices of each edge of a cell, the lower number first.
-std::vector<Ends> edges_of(const Mesh& mesh, std::size_t cell) {
-  std::vector<Ends> edges;
+std::vector<Edge> edges_of(const Mesh& mesh, std::size_t cell) {
+  std::vector<Edge> edges;
   const auto nodes = mesh.cells[cell];
   for (const catalog::EdgeRow& edge : mesh.row(cell).edges)
     edges.push_back(std::minmax({nodes[static_cast<std::size_t>(edge.first)], nodes[static_cast<std::size_t>(edge.second)]}));
@@ -42,15 +42,15 @@ std::vector<char> chosen(const Mesh& mesh, std::span<const std::string> groups, 
   for (std::size_t c = 0; c < mesh.n_cells(); ++c)
     if (!catalog::find_refinement(mesh.types[c])) mark[c] = 0;  // a point stays
 
-  std::set<Ends> cut;
+  std::set<Edge> cut;
   for (std::size_t c = 0; c < mesh.n_cells(); ++c)
     if (mark[c])
-      for (const Ends& edge : edges_of(mesh, c)) cut.insert(edge);
+      for (const Edge& edge : edges_of(mesh, c)) cut.insert(edge);
   const NodeCells around(mesh);
   for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
     if (mark[c]) continue;
-    const std::vector<Ends> own = edges_of(mesh, c);
-    if (std::ranges::none_of(own, [&](const Ends& edge) { return cut.contains(edge); })) continue;
+    const std::vector<Edge> own = edges_of(mesh, c);
+    if (std::ranges::none_of(own, [&](const Edge& edge) { return cut.contains(edge); })) continue;
     const bool is_edge = mesh.row(c).dimension == 1;
     const bool is_facet = mesh.row(c).dimension == 2 &&
                           std::ranges::any_of(body_cells(mesh, around, c),
@@ -60,7 +60,7 @@ std::vector<char> chosen(const Mesh& mesh, std::span<const std::string> groups, 
     ++report.attached;
   }
   for (std::size_t c = 0; c < mesh.n_cells(); ++c)
-    for (const Ends& edge : edges_of(mesh, c))
+    for (const Edge& edge : edges_of(mesh, c))
       if (!mark[c] && cut.contains(edge)) {
         const std::string names = groups_with(mesh, static_cast<std::int32_t>(c));
         fail("RAFFINE_1", {{"keyword", keyword},

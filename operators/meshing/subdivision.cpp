@@ -7,11 +7,11 @@
 
 namespace lacon {
 
-constexpr std::size_t nodes_of_largest_cell = 27;
+constexpr std::size_t max_nodes = 27;
 
 std::array<double, 3> image(CellType type, std::span<const std::int32_t> nodes, std::span<const double> xi,
                             std::span<const double> coordinates) {
-  std::array<double, nodes_of_largest_cell> shape;
+  std::array<double, max_nodes> shape;
   shape_functions(type, xi, {shape.data(), nodes.size()});
   std::array<double, 3> point{};
   for (std::size_t a = 0; a < nodes.size(); ++a)

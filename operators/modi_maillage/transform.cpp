@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "lacon/catalog/cells.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/meshing/body.hpp"
@@ -70,10 +71,6 @@ void mirror(Mesh& mesh, const Keywords& factor) {
   settle_turned(mesh, patches);
 }
 
-}  // namespace
-
-namespace {
-
 double largest(const Mesh& mesh) {
   double most = 0;
   for (const double coordinate : mesh.coordinates) most = std::max(most, std::abs(coordinate));
@@ -110,6 +107,8 @@ bool move(Mesh& mesh, const Keywords& keywords) {
 void lie_down(Mesh& mesh, double size) {
   constexpr double round_off = 1e-14;
   if (mesh.dimension != 3) return;
+  const bool volumes = std::ranges::any_of(mesh.types, [](const auto type) { return catalog::cell(type).dimension == 3; });
+  if (volumes) return;
   const std::vector<double> in_space = mesh.coordinates;
   for (std::size_t n = 0; n < mesh.n_nodes(); ++n)
     if (double& z = mesh.coordinates[3 * n + 2]; std::abs(z) <= round_off * size) z = 0;
@@ -120,7 +119,8 @@ void lie_down(Mesh& mesh, double size) {
 }  // namespace
 
 bool transform(Mesh& mesh, const Keywords& keywords) {
-  const double before = largest(mesh);
+  // What is scaled to next to nothing is not flat; what moves from far away is as flat as coordinates there can tell.
+  const double before = keywords.has("ECHELLE") ? 0 : largest(mesh);
   if (asks_for_space(keywords)) mesh.dimension = 3;
   if (!move(mesh, keywords)) return false;
   lie_down(mesh, std::max(before, largest(mesh)));

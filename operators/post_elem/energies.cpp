@@ -16,8 +16,8 @@ namespace lacon {
 namespace {
 
 /// The result that POST_ELEM names, with all that its fields are integrated by.
-struct EnergySubject {
-  EnergySubject(const Order& order, const Base& base)
+struct Subject {
+  Subject(const Order& order, const Base& base)
       : result(with_model(base, base.result(order.keywords.concept_id("RESULTAT")), order.keywords)),
         model(model_of(base, result)),
         mesh(base.mesh(model.mesh)),
@@ -28,8 +28,8 @@ struct EnergySubject {
     for (std::size_t k = 0; k < result.orders.size(); ++k)
       if (std::find(chosen.begin(), chosen.end(), result.orders[k]) != chosen.end()) orders.push_back(k);
   }
-  EnergySubject(const EnergySubject&) = delete;
-  EnergySubject& operator=(const EnergySubject&) = delete;
+  Subject(const Subject&) = delete;
+  Subject& operator=(const Subject&) = delete;
 
   Result result;
   Model model;
@@ -50,7 +50,7 @@ void refuse_large_strain(const Result& result, const std::string& keyword) {
 }  // namespace
 
 Table energies(const Order& order, const Base& base, const std::string& keyword) {
-  EnergySubject subject(order, base);
+  Subject subject(order, base);
   refuse_large_strain(subject.result, keyword);
   Table table =
       Table::of({{"NUME_ORDRE", "I"}, {"INST", "R"}, {"LIEU", "K24"}, {"ENTITE", "K8"}, {"TOTALE", "R"}, {"POUR_CENT", "R"}});
@@ -86,7 +86,7 @@ Table energies(const Order& order, const Base& base, const std::string& keyword)
 }
 
 Table external_work(const Order& order, const Base& base) {
-  EnergySubject subject(order, base);
+  Subject subject(order, base);
   refuse_large_strain(subject.result, "TRAV_EXT");
   Table table = Table::of({{"NUME_ORDRE", "I"}, {"INST", "R"}, {"TRAV_ELAS", "R"}, {"TRAV_REEL", "R"}});
   const int dimension = subject.mesh.dimension;

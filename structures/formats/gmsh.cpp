@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 /// Number of nodes and name of gmsh's types of cells that have no row in cells.toml, to name them in the refusal.
 constexpr std::pair<int, std::string_view> unused_types[] = {{13, "gmsh_prism_18"}, {14, "gmsh_pyramid_14"}};
 
-using GmshEntity = std::pair<int, std::int64_t>;  ///< dimension and tag: a geometrical entity, or a physical group
+using Entity = std::pair<int, std::int64_t>;  ///< dimension and tag: a geometrical entity, or a physical group
 
 /// The text of a file with a position in it. Numbers come as text or as bytes, as the file's head says.
 class Source {
@@ -213,9 +213,9 @@ class GmshReader {
     for (int k = 0; k < (version_4_0_ ? 1 : 3); ++k) source_.size();
     return blocks;
   }
-  GmshEntity entity_4() {
+  Entity entity_4() {
     const std::int64_t first = source_.integer(), second = source_.integer();
-    return version_4_0_ ? GmshEntity(static_cast<int>(second), first) : GmshEntity(static_cast<int>(first), second);
+    return version_4_0_ ? Entity(static_cast<int>(second), first) : Entity(static_cast<int>(first), second);
   }
   std::int64_t tag_4() { return version_4_0_ ? source_.integer() : source_.size(); }
 
@@ -295,7 +295,7 @@ class GmshReader {
   void elements_4() {
     const std::size_t blocks = blocks_4();
     for (std::size_t block = 0; block < blocks; ++block) {
-      const GmshEntity entity = entity_4();
+      const Entity entity = entity_4();
       const catalog::CellRow& row = row_of(source_.integer());
       const std::size_t n = source_.count(source_.size(), 4);
       for (std::size_t i = 0; i < n; ++i) {
@@ -313,9 +313,9 @@ class GmshReader {
   Source& source_;
   FileNames file_names_;
   bool version_4_ = false, version_4_0_ = false;
-  std::map<GmshEntity, std::string> names_;                      ///< of physical groups
-  std::map<GmshEntity, std::vector<std::int64_t>> physical_of_;  ///< groups of each geometrical entity
-  std::unordered_map<std::int64_t, std::int32_t> number_;        ///< of a node by its tag
+  std::map<Entity, std::string> names_;                      ///< of physical groups
+  std::map<Entity, std::vector<std::int64_t>> physical_of_;  ///< groups of each geometrical entity
+  std::unordered_map<std::int64_t, std::int32_t> number_;    ///< of a node by its tag
   std::vector<double> coordinates_;
   std::vector<Cell> cells_;
   std::size_t memberships_ = 0;      ///< of cells in physical groups

@@ -41,14 +41,14 @@ constexpr std::int32_t geometries[] = {1,   102, 103, 104, 203, 204, 206, 207, 2
 /// Says of a field in the file whose it is; no other program looks for it.
 constexpr const char* owner_attribute = "OWNER";
 
-struct MedEntity {
+struct Entity {
   std::string_view prefix;  ///< of its groups in a step: "MAI." + type
   std::uint32_t bit;        ///< in LEN
   const char* geometry;     ///< mask of geometric types
   const char* steps;        ///< of the field: in how many steps that mask is the same
 };
 
-constexpr MedEntity entities[] = {
+constexpr Entity entities[] = {
     {"MAI.", 1u << 0, "LGC", "LCA"}, {"NOE", 1u << 3, "LGN", "LNA"}, {"NOE.", 1u << 4, "LGT", "LTA"}};
 
 std::uint32_t geometry_bit(std::string_view med_name) {

@@ -64,6 +64,12 @@ class Mistakes(unittest.TestCase):
         for number, bound in ((2**63, "at most 9.223372037e+18"), (-2**63 - 1, "at least -9.223372037e+18")):
             self.one("KEYWORD_15", "DEFI_LIST_ENTI/DEBUT", bound, command="DEFI_LIST_ENTI", DEBUT=number, INTERVALLE={"JUSQU_A": 3, "PAS": 1})
 
+    def test_bounds_speak_the_language_of_the_user(self):
+        """In French they were half English."""
+        with unittest.mock.patch.dict(os.environ, LC_ALL="fr_FR.UTF-8"):
+            self.one("KEYWORD_15", "LIRE_MAILLAGE/UNITE", "au plus 99", command="LIRE_MAILLAGE", UNITE=10**30)
+            self.one("KEYWORD_15", "LIRE_MAILLAGE/UNITE", "au moins 1", command="LIRE_MAILLAGE", UNITE=-1)
+
     def test_a_margin_of_memory_that_no_machine_has(self):
         """10**9 percent were a factor that MUMPS had no memory for."""
         study = {"MODELE": concept("model"), "CHAM_MATER": concept("material_field"), "EXCIT": {"CHARGE": concept("load")},

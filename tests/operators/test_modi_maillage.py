@@ -67,6 +67,11 @@ class ModiMaillage(OperatorTest):
         self.assertEqual(self.attributes("mesh_3")["dimension"], 3)
         np.testing.assert_array_equal(moved.coordinates[:, 2], 5)
 
+    def test_what_is_scaled_to_next_to_nothing_is_not_flat(self):
+        self.write_mesh("mesh_2", [[x, y, x * y] for x, y in NODES], CELLS, GROUPS)
+        self.moved("mesh_2", ECHELLE=1e-20)
+        self.assertEqual(self.attributes("mesh_2")["dimension"], 3)
+
     def write_tetrahedron(self):
         points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
         self.write_mesh("mesh_2", points, [("TRIA3", [0, 2, 1]), ("TETRA4", [0, 1, 2, 3])], {"LOW": [0]})

@@ -197,20 +197,19 @@ TEST(MatrixChoice, InSpaceSecondDerivativesOfGapsWaitForAResidualThatFallsSlowly
 // At the end of an instant the consistent matrix is asked once more where another one took its place: not where its pivots
 // say nothing.
 TEST(MatrixChoice, SaysWhetherTheConsistentMatrixIsWorthAsking) {
-  MatrixChoice plane({}), space({.in_space = true});
-  const MatrixChoice flows({.made_symmetric = true});
-  EXPECT_TRUE(plane.pivots_tell(true) && space.pivots_tell(false));
-  EXPECT_FALSE(space.pivots_tell(true) || flows.pivots_tell(false));
-  for (MatrixChoice* choice : {&plane, &space}) {
-    choice->start_instant();
-    EXPECT_FALSE(choice->has_replaced());
-    EXPECT_FALSE(choice->note_pivots(choice->consistent(), false, 1, 1));
-    EXPECT_FALSE(choice->has_replaced());
-    EXPECT_TRUE(choice->note_pivots(choice->consistent(), false, 2, 1));
-    EXPECT_TRUE(choice->has_replaced());
-    choice->start_instant();
-    EXPECT_FALSE(choice->has_replaced());
-  }
+  EXPECT_TRUE(MatrixChoice({}).pivots_tell());
+  EXPECT_FALSE(MatrixChoice({.made_symmetric = true}).pivots_tell());
+  EXPECT_FALSE(MatrixChoice({.symmetric = false}).pivots_tell());
+  EXPECT_FALSE(MatrixChoice({.in_space = true}).pivots_tell());
+  MatrixChoice choice({});
+  choice.start_instant();
+  EXPECT_FALSE(choice.has_replaced());
+  EXPECT_FALSE(choice.note_pivots(consistent, false, 1, 1));
+  EXPECT_FALSE(choice.has_replaced());
+  EXPECT_TRUE(choice.note_pivots(consistent, false, 2, 1));
+  EXPECT_TRUE(choice.has_replaced());
+  choice.start_instant();
+  EXPECT_FALSE(choice.has_replaced());
 }
 
 }  // namespace
