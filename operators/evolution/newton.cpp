@@ -323,7 +323,8 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       ++last;
       --beyond;
     }
-    const bool ends = iteration == last, goes_nowhere = course_.wanders(ends ? in_vain_to_the_end : in_vain);
+    const bool ends = iteration == last;
+    const bool goes_nowhere = course_.wanders(ends ? in_vain_to_the_end : in_vain) || (ends && course_.drags(in_vain));
     const bool other_forces = (course_.period() || goes_nowhere || (course_.stands() && settled_ > drifting) ||
                                std::min(course_.growths(), settled_) >= drifting) &&
                               keep_covers_that_sway(instant, state, ends);

@@ -107,6 +107,10 @@ bool ResidualCourse::wanders(int iterations) const {
   return since >= least && since < residuals_.back() && least >= far * *std::max_element(first, residuals_.end());
 }
 
+bool ResidualCourse::drags(int iterations) const {
+  return std::ssize(residuals_) > iterations && finite() && residuals_.back() > residuals_.end()[-1 - iterations] / 2;
+}
+
 std::string ResidualCourse::words() const {
   if (!finite()) return part("residual_no_number");
   if (const auto again = period()) return part("residual_goes_round", {{"period", std::to_string(*again)}});

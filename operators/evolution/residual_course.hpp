@@ -35,6 +35,8 @@ class ResidualCourse {
   bool stands() const;
   /// Whether of so many the later half is no less than those before them, none is near its end, and the last one no way down.
   bool wanders(int iterations) const;
+  /// Whether so many have left more than half of it, all together.
+  bool drags(int iterations) const;
   /// How many of the last iterations have each left more than the one before.
   int growths() const;
   /// In how many iterations up to the last it has been largest at the same place.

@@ -90,6 +90,12 @@ TEST(ResidualCourse, KnowsThatItGetsNowhere) {
   EXPECT_FALSE(course({1e-9, 13, 8, 7, 4, 2, 2, 9, 3}).wanders(9));  // what flows was elastic in the first iteration
 }
 
+TEST(ResidualCourse, KnowsThatItDrags) {
+  EXPECT_TRUE(course({9, 1, 0.9, 0.8, 0.7, 0.6}).drags(4));
+  EXPECT_FALSE(course({9, 1, 0.9, 0.8, 0.7, 0.5}).drags(4));
+  EXPECT_FALSE(course({1, 0.9, 0.8, 0.7}).drags(4));  // not for long enough
+}
+
 TEST(ResidualCourse, KnowsThatItStands) {
   EXPECT_TRUE(course({9, 1, 1.001, 1, 1.001, 1, 1.001}).stands());
   EXPECT_FALSE(course({9, 1, 1.001, 1, 1.001, 1}).stands());  // not for long enough
