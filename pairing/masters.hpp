@@ -59,7 +59,9 @@ struct Masters {
   /// @param share of the slave cell  @param normal of the slave at `from`, unit
   bool is_through_bodies(double share, std::size_t slave_cell, Vec3 from, Vec3 normal, std::size_t master_cell,
                          double gap) const {
-    std::call_once(*ways_known_, [&] { ways_.emplace(slave, master); });
+    std::call_once(*ways_known_, [&] {
+      ways_.emplace(options.boundary ? std::vector{options.boundary} : std::vector{&slave, &master});
+    });
     const std::int32_t own = body_of(slave, slave_cell), other = body_of(master, master_cell);
     if (gap > 0) {
       constexpr double near = 0.2, at_its_end = 1.05;  // of the way: facets are taken as flat, and those at both ends may bulge

@@ -145,12 +145,13 @@ std::optional<Rejection> left_out(const PairingOptions& options, const Surface& 
 bool within_limits(const PairingOptions& options, double largest_gap, const CoupleSize& couple) {
   return !(options.distance_limit > 0 && largest_gap > options.distance_limit * couple.diameter) &&
          largest_gap <= std::min(deepest(options, couple), deepest_in_itself(options, couple)) &&
-         !may_be_through_bodies(options, largest_gap, couple, 0);
+         !may_be_through_bodies(options, largest_gap, couple, 0) && !may_be_through_bodies(options, -largest_gap, couple, 0);
 }
 
 bool may_be_through_bodies(const PairingOptions& options, double gap, const CoupleSize& couple, double moved) {
-  return options.depth_limit > 0 && !(options.distance_limit > 0) && couple.of_two_bodies &&
-         std::abs(gap) > within_coarse * couple.diameter + (gap < 0 ? moved : 0);
+  if (!(options.depth_limit > 0) || options.distance_limit > 0 || !couple.of_two_bodies) return false;
+  const double coarse = within_coarse * couple.diameter;
+  return gap > coarse || -gap > std::min(coarse, couple.half) + moved;
 }
 
 std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, const CoupleSize& couple, double moved) {

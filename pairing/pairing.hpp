@@ -92,6 +92,9 @@ struct PairingOptions {
   /// are some it gets no contact cell with masters of other faces that were walls (was_wall()). The caller owns both.
   const Ragged<std::int32_t>* in_front = nullptr;
   std::span<const std::int32_t> faces = {};  ///< of each master cell
+  /// The whole skin of all bodies, with Surface::body, for ways that lead through them; null: what both skins are of it. The
+  /// caller owns it.
+  const Surface* boundary = nullptr;
   /// Angle between the slave's normal and the opposite of the master's, in degrees, from which on a couple counts less and less
   /// (steepness.hpp); 90: none does.
   double steep_angle = 85;

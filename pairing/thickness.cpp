@@ -75,17 +75,14 @@ Box<3> box_of(const Surface& skin, std::size_t cell) {
 
 }  // namespace
 
-std::pair<const Surface*, std::size_t> WaysThrough::cell_at(std::size_t i) const {
-  return i < slave_.size() ? std::pair(&slave_, i) : std::pair(&master_, i - slave_.size());
-}
-
-WaysThrough::WaysThrough(const Surface& slave, const Surface& master) : slave_(slave), master_(master), tree_({}) {
+WaysThrough::WaysThrough(std::vector<const Surface*> skins) : skins_(std::move(skins)), tree_({}) {
   std::vector<Box<3>> boxes;
-  for (std::size_t i = 0; i < slave.size() + master.size(); ++i) {
-    const auto [skin, cell] = cell_at(i);
-    boxes.push_back(box_of(*skin, cell));
-    normals_.push_back(normal_of(skin->types[cell], skin->nodes[cell], skin->coordinates));
-  }
+  for (std::size_t k = 0; k < skins_.size(); ++k)
+    for (std::size_t cell = 0; cell < skins_[k]->size(); ++cell) {
+      boxes.push_back(box_of(*skins_[k], cell));
+      cells_.push_back({static_cast<std::int32_t>(k), static_cast<std::int32_t>(cell),
+                        normal_of(skins_[k]->types[cell], skins_[k]->nodes[cell], skins_[k]->coordinates)});
+    }
   tree_ = BoxTree<3>(std::move(boxes));
 }
 
@@ -94,27 +91,24 @@ double WaysThrough::to_leave(std::int32_t body, Vec3 from, Vec3 along) const {
   double nearest = infinite;
   tree_.visit([&](const Box<3>& box) { return passes(way, box); },
               [&](std::int32_t i) {
-                const auto [skin, cell] = cell_at(static_cast<std::size_t>(i));
-                if (!(dot(normals_[static_cast<std::size_t>(i)], along) > 0) || body_of(*skin, cell) != body) return;
-                const double far = to_cell(way, *skin, cell);
+                const Cell& at = cells_[static_cast<std::size_t>(i)];
+                const Surface& skin = *skins_[static_cast<std::size_t>(at.skin)];
+                if (!(dot(at.normal, along) > 0) || body_of(skin, static_cast<std::size_t>(at.cell)) != body) return;
+                const double far = to_cell(way, skin, static_cast<std::size_t>(at.cell));
                 if (far > 0) nearest = std::min(nearest, far);
               });
   return nearest;
 }
 
-Thickness thickness(const Surface& slave, const Surface& master) {
+std::vector<double> thickness(const Surface& skin, const WaysThrough& ways) {
   constexpr std::size_t block = 512;  // cells that a thread measures at a time
-  const WaysThrough ways(slave, master);
-  const auto of = [&](const Surface& skin) {
-    std::vector<double> found(skin.size());
-    parallel_for(skin.size(), block, [&](const LoopBlock& cells) {
-      for (std::size_t cell = cells.first; cell < cells.last; ++cell)
-        found[cell] = ways.to_leave(body_of(skin, cell), middle_of(skin.nodes[cell], skin.coordinates),
-                                    -1.0 * normal_of(skin.types[cell], skin.nodes[cell], skin.coordinates));
-    });
-    return found;
-  };
-  return {of(slave), of(master)};
+  std::vector<double> found(skin.size());
+  parallel_for(skin.size(), block, [&](const LoopBlock& cells) {
+    for (std::size_t cell = cells.first; cell < cells.last; ++cell)
+      found[cell] = ways.to_leave(body_of(skin, cell), middle_of(skin.nodes[cell], skin.coordinates),
+                                  -1.0 * normal_of(skin.types[cell], skin.nodes[cell], skin.coordinates));
+  });
+  return found;
 }
 
 }  // namespace lacon

@@ -9,10 +9,12 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/reference.hpp"
+#include "lacon/operators/contact/boundary.hpp"
 #include "lacon/operators/contact/facets.hpp"
 #include "lacon/operators/contact/facing.hpp"
 #include "lacon/pairing/free_ends.hpp"
 #include "lacon/pairing/normals.hpp"
+#include "lacon/pairing/thickness.hpp"
 #include "lacon/structures/bodies.hpp"
 #include "lacon/structures/displacement.hpp"
 #include "lacon/structures/memory.hpp"
@@ -123,6 +125,8 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
   std::map<std::int32_t, std::int32_t> slave_of_cell;
   for (std::size_t s = 0; s < contact_.slaves.size(); ++s)
     slave_of_cell[contact_.slaves[s].cell] = static_cast<std::int32_t>(s);
+  boundary_ = boundary_of(mesh, model, contact, body_, coordinates_);
+  const WaysThrough ways({&boundary_});
   for (const ContactZone& data : contact_.zones) {
     Zone zone{.slaves = {},
               .masters = data.master,
@@ -131,12 +135,14 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
               .current_jacobian = data.jacobian == "ACTUALISE",
               .pairing = {.distance_limit = data.distance_limit,
                           .depth_limit = data.distance_limit > 0 ? -1 : deepest_overlap,
+                          .boundary = &boundary_,
                           .drops_slivers = !contact.frozen_gap}};
     zone.slave.rest = zone.master.rest = rest_;
     zone.slave.body = zone.master.body = body_;
-    zone.thickness = thickness(zone.slave, zone.master);
-    zone.slave.thickness = zone.thickness.slave;
-    zone.master.thickness = zone.thickness.master;
+    zone.slave_thickness = thickness(zone.slave, ways);
+    zone.master_thickness = thickness(zone.master, ways);
+    zone.slave.thickness = zone.slave_thickness;
+    zone.master.thickness = zone.master_thickness;
     for (const std::int32_t cell : data.slave) zone.slaves.push_back(slave_of_cell.at(cell));
     for (std::size_t i = 0; i < zone.masters.size(); ++i) zone.places[zone.masters[i]] = static_cast<std::int32_t>(i);
     for (const std::int32_t patch : data.patches) zone_of_[patch] = static_cast<std::int32_t>(zones_.size());

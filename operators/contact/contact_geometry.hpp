@@ -16,7 +16,6 @@
 #include "lacon/operators/contact/mirrors.hpp"
 #include "lacon/operators/contact/normal_variation.hpp"
 #include "lacon/pairing/pairing.hpp"
-#include "lacon/pairing/thickness.hpp"
 #include "lacon/structures/concepts.hpp"
 
 namespace lacon {
@@ -57,17 +56,17 @@ class ContactGeometry {
     std::vector<std::uint8_t> inner;    ///< Surface::inner of the slave
     std::vector<SlaveCut> cuts;         ///< Surface::cuts of the slave: in space, since it was at rest
     std::vector<EndPlane> planes;
-    std::vector<std::uint8_t> mirrored;                   ///< Surface::mirrored of the master
-    bool goes_on_flush = false;                           ///< go_on_where_flush()
-    std::vector<std::uint8_t> flush;                      ///< of these, what it adds
-    std::vector<std::array<std::int32_t, 4>> neighbours;  ///< edge_neighbours() of the master
-    std::vector<std::uint8_t> free_ends;                  ///< Surface::free_ends of the master
-    std::vector<Couple> left_out;                         ///< PairingOptions::left_out
-    std::map<std::int32_t, std::int32_t> places;          ///< in `master` of cells of the mesh
-    std::vector<std::int32_t> faces;                      ///< PairingOptions::faces
-    bool one_face = true;                                 ///< of the master: there are no walls
-    Thickness thickness;                                  ///< Surface::thickness, before anything has moved
-    Ragged<std::int32_t> in_front;                        ///< PairingOptions::in_front
+    std::vector<std::uint8_t> mirrored;                     ///< Surface::mirrored of the master
+    bool goes_on_flush = false;                             ///< go_on_where_flush()
+    std::vector<std::uint8_t> flush;                        ///< of these, what it adds
+    std::vector<std::array<std::int32_t, 4>> neighbours;    ///< edge_neighbours() of the master
+    std::vector<std::uint8_t> free_ends;                    ///< Surface::free_ends of the master
+    std::vector<Couple> left_out;                           ///< PairingOptions::left_out
+    std::map<std::int32_t, std::int32_t> places;            ///< in `master` of cells of the mesh
+    std::vector<std::int32_t> faces;                        ///< PairingOptions::faces
+    bool one_face = true;                                   ///< of the master: there are no walls
+    std::vector<double> slave_thickness, master_thickness;  ///< Surface::thickness, before anything has moved
+    Ragged<std::int32_t> in_front;                          ///< PairingOptions::in_front
     Surface slave, master;
     bool current_jacobian = false;
     PairingOptions pairing;
@@ -249,6 +248,7 @@ class ContactGeometry {
   std::vector<double> rest_;                             ///< likewise, at rest
   std::vector<double> walls_at_;                         ///< walls_decided_at()
   std::vector<std::int32_t> body_;                       ///< (n_nodes): Bodies::of
+  Surface boundary_;                                     ///< PairingOptions::boundary
   std::vector<Zone> zones_;
   std::vector<std::vector<double>> normals_;  ///< of each zone, at the nodes (LISSAGE)
   std::vector<std::vector<double>> offsets_;  ///< likewise

@@ -30,11 +30,20 @@ const Surface& with_body(Skin& skin, const std::vector<std::int32_t>& body) {
   return skin.view();
 }
 
+struct BothSides {
+  std::vector<double> slave, master;
+};
+
+BothSides thickness(const Surface& slave, const Surface& master) {
+  const WaysThrough ways({&slave, &master});
+  return {lacon::thickness(slave, ways), lacon::thickness(master, ways)};
+}
+
 TEST(Thickness, IsToTheNearestOtherSideOfTheSameBody) {
   const std::vector<std::int32_t> one(40, 7), other(40, 8);
   for (const Kind kind : {Kind::linear, Kind::quadratic}) {
     Skin upper = plate(0, 0.25, 4, kind), lower = plate(-3, 0, 7, kind);
-    const Thickness found = thickness(with_body(upper, one), with_body(lower, other));
+    const BothSides found = thickness(with_body(upper, one), with_body(lower, other));
     EXPECT_EQ(found.slave, std::vector<double>(8, 0.25));
     EXPECT_EQ(found.master, std::vector<double>(14, 3));
   }
@@ -42,7 +51,7 @@ TEST(Thickness, IsToTheNearestOtherSideOfTheSameBody) {
   Skin bottom, rest;
   add_chain(bottom, line(0), {0, 4}, Kind::linear);
   add_chain(rest, line(2), {4, 0}, Kind::linear);
-  const Thickness through = thickness(with_body(bottom, one), with_body(rest, one));
+  const BothSides through = thickness(with_body(bottom, one), with_body(rest, one));
   EXPECT_EQ(through.slave, std::vector<double>{2});
   EXPECT_EQ(through.master, std::vector<double>{2});
   add_chain(rest, line(0.5), {3, 1}, Kind::linear);
@@ -58,7 +67,7 @@ TEST(Thickness, InSpaceMissesNoCellByRoundOff) {
     for (const CellType above : kinds) {
       Skin3 bottom = mesh({6, 6, below, false}, plane(0.1), random), top = mesh({4, 9, above, true}, plane(0.4), random);
       bottom.surface.body = top.surface.body = one;
-      const Thickness found = thickness(bottom.view(), top.view());
+      const BothSides found = thickness(bottom.view(), top.view());
       for (const std::vector<double>& side : {found.slave, found.master})
         for (const double thick : side) EXPECT_NEAR(thick, 0.3, 1e-14);
       top.surface.body = other;
@@ -71,7 +80,7 @@ TEST(Thickness, OverlapsOfMoreThanHalfOfBothBodiesAreLeftOut) {
   // the lower one 3 thick: the far sides overlap by 4, near ones by nothing
   Skin upper = plate(0, 1, 1), lower = plate(-3, 0, 1);
   Surface slave = with_body(upper, one), master = with_body(lower, other);
-  const Thickness thick = thickness(slave, master);
+  const BothSides thick = thickness(slave, master);
   slave.body = master.body = {};  // so that no way through them is looked at
   const auto rejected = [&](double raised, const PairingOptions& options, double closer = 0) {
     const std::vector<double> now = moved(upper.coordinates, {0, raised, 0}), rest = moved(now, {0, closer, 0});
@@ -171,7 +180,7 @@ TEST(WaysThrough, AThinBodyInsideOfAnotherOneStaysInContact) {
   Skin leaf = plate(-0.6, -0.5, 40), block = plate(-3, 0, 40);  // 0.1 thick, the block 3
   const PairingOptions deep{.depth_limit = 40};
   Surface slave = with_body(leaf, one), master = with_body(block, other);
-  const Thickness thick = thickness(slave, master);
+  const BothSides thick = thickness(slave, master);
   slave.thickness = thick.slave, master.thickness = thick.master;
   const Pairing found = pair(slave, master, deep);
   EXPECT_GE(found.count(Rejection::too_deep), 40);  // its upper side and the lower one of the block
