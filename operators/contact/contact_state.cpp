@@ -345,10 +345,16 @@ std::optional<AlternatingPressures> ContactState::alternation(std::int32_t zone,
     return found && found->share > tolerances_.alternating ? found : std::nullopt;
   };
   if (const auto found = much(alternations_[of_zone].measure(patches.lambda, area, pressed, pressed))) return found;
-  if (auto few = alternations_[of_zone].measure(patches.lambda, area, seen, pressed);
-      few && few->share > tolerances_.scattered && few->pressing < tolerances_.few) {
-    few->by = AlternatingBy::few_patches;
-    return few;
+  if (auto all = alternations_[of_zone].measure(patches.lambda, area, seen, pressed)) {
+    if (all->share > tolerances_.scattered && all->pressing < tolerances_.few) {
+      all->by = AlternatingBy::few_patches;
+      return all;
+    }
+    if (all->scatter > tolerances_.scatter && has_facets()) {
+      all->by = AlternatingBy::scattered;
+      all->share = all->scatter;
+      return all;
+    }
   }
   const auto everywhere = much(rows_[of_zone].measure(patches.lambda, area, seen, pressed));
   const auto inside = much(rows_[of_zone].measure_inside(patches.lambda, area, seen, pressed, resisting));

@@ -39,6 +39,7 @@ struct ContactTolerances {
   double missed_pressure = 0.1;       ///< of the largest: what such points would press with, worth an alarm
   double alternating = 0.1;           ///< of the pressure: by how much neighbours may differ to opposite sides
   double scattered = 0.2, few = 0.6;  ///< likewise, where open ones among them count, and how many of them all press
+  double scatter = 0.3;               ///< likewise, of triangles of curved skins, to whichever side
   double stiffer = 2;                 ///< how many times as stiff as its master a slave is that answers bending by pressures
   double unpressed = 0.3;             ///< of what a pressure presses in: how deep it leaves points inside that are pressed flat
   double touching = 1e-8;             ///< of h: an overlap of patches without contact that is round-off

@@ -69,6 +69,7 @@ std::optional<AlternatingPressures> PressureAlternation::measure(std::span<const
     differences.push_back(difference);
     if (std::isnan(difference)) continue;
     squares += here * here;
+    found.scatter += difference * difference;
     ++known;
     pressing += pressed[inner.patch];
     if (std::abs(difference) > largest) largest = std::abs(difference), found.patch = inner.patch;
@@ -80,6 +81,7 @@ std::optional<AlternatingPressures> PressureAlternation::measure(std::span<const
   if (couples < least_couples || squares == 0) return std::nullopt;
   found.share = product < 0 ? std::sqrt(-product / couples / (squares / known)) : 0;
   found.pressing = static_cast<double>(pressing) / known;
+  found.scatter = std::sqrt(found.scatter / squares);
   return found;
 }
 

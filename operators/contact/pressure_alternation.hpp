@@ -9,9 +9,10 @@
 
 namespace lacon {
 
-/// What pressures of a zone go up and down by: from triangle to triangle; with most patches
-/// open; from patch to patch of a row (pressure_rows.hpp), where facets of curved skins meet, or along skins that have none.
-enum class AlternatingBy { triangles, few_patches, facets, rows };
+/// What pressures of a zone go up and down by: from triangle to triangle; with most patches open; from triangle to triangle of
+/// curved skins, with or without a sense; from patch to patch of a row (pressure_rows.hpp), where facets of curved skins meet,
+/// or along skins that have none.
+enum class AlternatingBy { triangles, few_patches, scattered, facets, rows };
 
 /// Pressures of a zone that alternate.
 struct AlternatingPressures {
@@ -19,6 +20,7 @@ struct AlternatingPressures {
   std::size_t patch;  ///< furthest from its smooth pressure
   AlternatingBy by;
   double pressing = 1;  ///< part of the patches looked at
+  double scatter = 0;   ///< root of the mean square of distances from smooth pressures, over that of the pressure
 };
 
 /// A skin of linear triangles has two patches for each of its vertices. Pressures that alternate from patch to patch press on
@@ -33,7 +35,8 @@ class PressureAlternation {
   /// Over the patches whose vertices have nothing but whole triangles around, one of which is pressed; nothing where too few of
   /// them meet. Where open ones count, smooth pressures and their ends have less than 0.01 (edges of punches up to 0.4), and
   /// nine tenths press; of triangles that press alone, scattered among open ones, a third to a half does, and they have 0.25 to
-  /// 0.6.
+  /// 0.6. The pressures of Hertz on 26 to 61 triangles have a scatter of 0.14 to 0.08; spheres of such triangles had 0.45 and
+  /// more.
   /// @param pressure, area of each patch  @param whole those that count: all that see a master, or the pressed ones alone
   /// @param pressed those that are in contact
   std::optional<AlternatingPressures> measure(std::span<const double> pressure, std::span<const double> area,

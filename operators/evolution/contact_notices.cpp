@@ -233,6 +233,7 @@ void ContactNotices::end(bool /*completed*/) {
     const AlternatingBy by = alternating.most.by;
     inform(by == AlternatingBy::triangles     ? "EVOLUTION_47"
            : by == AlternatingBy::few_patches ? "EVOLUTION_74"
+           : by == AlternatingBy::scattered   ? "EVOLUTION_80"
            : by == AlternatingBy::facets      ? "EVOLUTION_67"
                                               : "EVOLUTION_70",
            {{"slave", names.slave_group},
