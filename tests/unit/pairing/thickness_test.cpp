@@ -191,6 +191,58 @@ TEST(WaysThrough, AThinBodyInsideOfAnotherOneStaysInContact) {
   EXPECT_EQ(*pressed.rbegin(), 39);
 }
 
+// Two plates on each other, ten times as long as thick in each cell: their far sides overlap by a fifth of a cell.
+TEST(WaysThrough, FarSidesOfThinPlatesAreLeftOut) {
+  const std::vector<std::int32_t> one(40, 7), other(40, 8);
+  Skin lower = plate(-0.1, 0, 4), upper = plate(0, 0.1, 4);
+  Surface slave = with_body(lower, one), master = with_body(upper, other);
+  const BothSides thick = thickness(slave, master);
+  slave.thickness = thick.slave, master.thickness = thick.master;
+  const auto far = [&](const PairingOptions& options) {
+    const Pairing found = pair(slave, master, options);
+    EXPECT_GE(found.cells.size(), 4U);
+    return std::ranges::count_if(found.cells.slave, [](std::int32_t cell) { return cell < 4; });
+  };
+  EXPECT_EQ(far({.depth_limit = 4}), 0);
+  EXPECT_EQ(far({.distance_limit = 4}), 4);  // who gives a limit has it
+}
+
+// Of a body whose far side is in no zone the boundary tells where ways leave it.
+TEST(WaysThrough, GoByTheWholeBoundaryWhereItIsKnown) {
+  const std::vector<std::int32_t> one(80, 7), other(80, 8);
+  Skin skin, rack, boundary;
+  // a slave that looks down from the top of its plate; 3 below the plate the top of a block that is 1 high
+  add_chain(
+      skin,
+      [](double t) {
+        return std::array{1 - t, 0.0};
+      },
+      {0, 1}, Kind::linear);
+  add_chain(
+      rack,
+      [](double t) {
+        return std::array{1 - t, -2.0};
+      },
+      {1, 0}, Kind::linear);
+  const Surface slave = with_body(skin, one), master = with_body(rack, other);
+  EXPECT_EQ(pair(slave, master, {.depth_limit = 4}).cells.size(), 1U);
+  std::vector<std::int32_t> body;
+  for (const double height : {0.0, -1.0, -2.0, -1.5}) {
+    const bool top = height == 0 || height == -1.5;
+    add_chain(
+        boundary,
+        [=](double t) {
+          return std::array{top ? 1 - t : t, height};
+        },
+        {0, 1}, Kind::linear);
+    body.resize(boundary.coordinates.size() / 3, height >= -1 ? 7 : 8);
+  }
+  boundary.surface.body = body;
+  const Pairing found = pair(slave, master, {.depth_limit = 4, .boundary = &boundary.view()});
+  EXPECT_EQ(found.cells.size(), 0U);
+  EXPECT_EQ(found.count(Rejection::too_deep), 1);
+}
+
 /// A slave of length 1 under a ledge of the master, which ends above it at `end`; behind that the master is 3 further away.
 /// @param ledge whether it is there at all  @param bar whether a bar lies on the way, whose upper side alone is known
 /// @param cells of the master behind it
