@@ -108,7 +108,7 @@ class Alternation(StudyTest):
 
     def test_scattered_pressures_of_triangles_are_told(self):
         """A paraboloid on a block, 12 graded cells along a side, that has 17 triangles in contact: pressures are off by half of the largest, to either
-        side, without going up and down from each to the next. Not of hexahedra, whose pressures are 17 % off."""
+        side, without going up and down from each to the next. Not of hexahedra, whose pressures are 17 % off and go up and down along rows."""
         def lines(cells, power):
             return np.linspace(0, 1, cells + 1) ** power
 
@@ -123,8 +123,8 @@ class Alternation(StudyTest):
             lower = brick(kind, [4 * lines(14, 1.5), 4 * lines(13, 1.5), -4 * lines(5, 1.5)[::-1]], None, "LOWER", {(2, 1): "LOWER_SKIN", (2, 0): "LOWER_BASE", **sides})
             one = contact_study(union([upper, lower]), hold, slaves=["UPPER_SKIN"], masters=["LOWER_SKIN"], convergence={"RESI_GLOB_RELA": 1e-9, "ITER_GLOB_MAXI": 40})
             run, _ = run_contact(self, [one], CONTACT_ALARMS="ALARME")
-            alarms = [line for line in (run.stdout + run.stderr).splitlines() if line.startswith("<A> ")]
-            self.assertEqual([alarm[:32] for alarm in alarms], ["<A> <EVOLUTION_80> zone UPPER_SK"] if kind == "TETRA4" else [], alarms)
+            told = "<A> <EVOLUTION_80> zone UPPER_SKIN on LOWER_SKIN" in run.stdout + run.stderr
+            self.assertEqual(told, kind == "TETRA4")
 
     def test_edges_of_a_punch_are_not_told(self):
         """Pressures that have no bound at the edges, on a mesh of matching size."""
