@@ -1,5 +1,5 @@
 # Stands in for an operator: reads its order, writes a small concept. The environment's STAND_IN says how it misbehaves:
-# {"crea_maillage": {"status": 2, "messages": [...], "kill": 9, "half": true, "lazy": true, "print": "NAME"}}
+# {"crea_maillage": {"status": 2, "messages": [...], "kill": 9, "launcher": 9, "half": true, "lazy": true, "print": "NAME"}}
 import json
 import os
 import pathlib
@@ -129,6 +129,8 @@ def main():
         write(base / result["id"] / "index.h5" if result["id"].startswith("result") else base / f"{result['id']}.h5")
     if "unit" in behaviour:
         pathlib.Path(order["units"][behaviour["unit"]]).write_text("written\n")
+    if behaviour.get("launcher"):
+        os.kill(int(os.environ["LACON_LAUNCHER"]), behaviour["launcher"])
     if behaviour.get("kill"):
         sys.stdout.flush()
         os.kill(os.getpid(), behaviour["kill"])

@@ -7,6 +7,8 @@ import sys
 import tempfile
 import unittest
 
+import h5py
+
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import ROOT, STUDY, LauncherTest  # noqa: E402
 
@@ -259,6 +261,32 @@ class Continued(KeptTest):
         self.run_study(STUDY + "import os\nos._exit(9)\n")
         more = "POURSUITE()\nprint(R.field_names())\nIMPR_RESU(UNITE=80, RESU=_F(RESULTAT=R))\nN = AFFE_MODELE(MAILLAGE=M, AFFE=_F(TOUT='OUI', PHENOMENE='MECANIQUE', MODELISATION='3D'))\nFIN()\n"
         self.assertEqual(self.started(more, "--base", "study.base", name="more.comm"), ["impr_resu", "affe_modele"])
+
+    def test_what_a_killed_run_enriched_is_not_enriched_twice(self):
+        """Killed behind the operator, at each step until the registry tells what it has made, and at the next one."""
+        die = """
+import os, sys
+def step(frame, event, _):
+    if event == EVENT and frame.f_code.co_name == NAME and "lacon" in frame.f_code.co_filename:
+        os._exit(9)
+"""
+        more = """
+POURSUITE()
+sys.setprofile(step)
+DEFI_GROUP(reuse=M0, MAILLAGE=M0, CREA_GROUP_MA=_F(NOM='NEW', TOUT='OUI'))
+FIN()
+"""
+        for name, event in (("Outcome", ""), ("enter_next", "call"), ("_add", "call"), ("enter_next", "return"), ("update_labels", "return"), ("write", "return"), ("_result", "return")):
+            with self.subTest(name, event=event):
+                self.back_to_first()
+                text = die.replace("EVENT", repr(event)).replace("NAME", repr(name)) + more
+                run = self.run_study(text, "--base", "study.base", name="more.comm", behaviour={"defi_group": {"launcher": 9}} if not event else None)
+                self.assertIn(run.status, (9, -9), run.err)
+                self.ok(self.run_study(die + more.replace("step", "None"), "--base", "study.base", name="more.comm"))
+                (mesh,) = [i for label, i in self.registry()["labels"].items() if label == "M0"]
+                with h5py.File(self.work / "study.base" / f"{mesh}.h5") as file:
+                    self.assertEqual(file.attrs["version"], 2)
+                self.assertEqual([path.name for path in (self.work / "study.base").rglob("*.partial")], [])
 
 
 if __name__ == "__main__":

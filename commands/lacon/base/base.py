@@ -17,7 +17,7 @@ from ..core.catalog import part
 from ..core.concepts import concepts_in, dumps, type_of
 from ..core.late import h5py
 from ..core.messages import AsterError, NeedsRun, fail
-from . import contents, kept, registry, seal
+from . import before, contents, kept, registry, seal
 from .unfinished import Unfinished
 
 _registry = registry.name
@@ -68,6 +68,7 @@ class Base:
                 self._empty()
             elif (self.folder / _registry).exists():
                 self._read(where)
+                before.put_back_all(self)
                 self.registry["labels"].update(self.unfinished.labels())
             elif not make:
                 fail("STUDY_2", where, folder=self.folder)

@@ -4,7 +4,6 @@ import contextlib
 import errno
 import json
 import os
-import shutil
 import signal
 import socket
 import stat
@@ -235,26 +234,3 @@ def raise_failure(outcome, program, where):
     if fatal and outcome.status == 4:
         raise InternalError(fatal, shown=True)
     raise InternalError([message("INTERNAL_3", where, program=program, how=part("exit_status_is", status=outcome.status))])
-
-
-def keep_copy(base, identifier):
-    """A second link to a concept that `reuse=` is about to change; give it to put_back or throw_away."""
-    path = base.path(identifier)
-    copy = path.with_name(path.name + ".before.partial")
-    if copy.exists():
-        copy.unlink()
-    try:
-        os.link(path, copy)
-    except OSError:
-        shutil.copy2(path, copy)
-    return copy
-
-
-def has_left(base, identifier, copy):
-    """An operator that failed has stored the concept, or changed the one that `copy` is of."""
-    path = base.path(identifier)
-    return path.exists() and not (copy and os.stat(path).st_mtime_ns == os.stat(copy).st_mtime_ns)
-
-
-def put_back(base, identifier, copy):
-    os.replace(copy, base.path(identifier))

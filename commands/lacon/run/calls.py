@@ -3,7 +3,7 @@
 import pathlib
 import time
 
-from ..base import command_files, orders
+from ..base import before, command_files, orders
 from ..commands.call import Call
 from ..commands.implementations import implementation, prepared
 from ..core import catalog, checker, current, labels, plugins
@@ -124,7 +124,7 @@ class Command:
         if grows:
             run.check_outputs(where)
             identifier = self._resume(run, kind, key, identifier, reused, result)
-        copy = orders.keep_copy(run.base, identifier) if reused else None
+        copy = before.keep(run.base, identifier) if reused else None
         if grows:
             at = run.base.kept.hold(identifier) if reused else None
             run.base.unfinished.begin(identifier, label, key, at, where, resumes="resume" in result)
@@ -140,7 +140,7 @@ class Command:
             if run.alarm_is_error:
                 run.count_alarms(outcome.messages)
         except BaseException:
-            if grows and not ended_well and orders.has_left(run.base, identifier, copy):
+            if grows and not ended_well and before.has_changed(run.base, identifier, copy):
                 self._keep_part(run, identifier, label, where, reused)
             elif result:
                 _give_up(run.base, result, copy)
@@ -148,7 +148,6 @@ class Command:
             raise
         if copy:
             run.base.kept.enter_next(identifier, copy, key, outcome.messages)
-            copy.unlink()
         elif result:
             run.base.kept.enter(identifier, key, outcome.messages)
         if grows:
@@ -158,6 +157,8 @@ class Command:
         if not result:
             return None, outcome
         item = self._result(run, identifier, label, where, reused, named)
+        if copy:
+            copy.unlink()  # the registry tells now what the concept holds
         if grows:
             run.base.unfinished.drop_record(identifier)
         return item, outcome
@@ -295,10 +296,10 @@ def _enter(run, label, item, where):
 
 def _give_up(base, result, copy):
     """The operator has failed, and left nothing: the concept that it changes is as it was, and the id of a new one is free again, unless a failed
-    step is kept under it. @param copy orders.keep_copy of the concept that it changes, or None"""
+    step is kept under it. @param copy before.keep() of the concept that it changes, or None"""
     identifier = result["id"]
     if copy:
-        orders.put_back(base, identifier, copy)
+        before.put_back(base, identifier, copy)
         if not result.get("resume"):
             base.unfinished.end(identifier)
     elif not base.failed_step(identifier).exists():
