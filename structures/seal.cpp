@@ -73,6 +73,19 @@ class OpenFile {
   int id_;
 };
 
+/// Whether a file is longer than HDF5 says that it is: so it had a seal, whatever is there now. HDF5 cuts off what it does not
+/// know where it changes a file; a disk that loses power may leave zeros.
+bool is_longer_than_its_content(const OpenFile& file, std::uint64_t size) {
+  constexpr std::string_view signature("\x89HDF\r\n\x1a\n\0", 9);  // with the version 0 of the superblock, which Lacon writes
+  std::array<char, 48> head = {};
+  if (size < head.size() || !file.read(head.data(), head.size(), 0) ||
+      !std::string_view(head.data(), head.size()).starts_with(signature))
+    return false;
+  std::uint64_t end = 0;
+  std::memcpy(&end, head.data() + 40, sizeof end);
+  return size > end;
+}
+
 /// The trailer that belongs to the first `length` bytes. @return whether they could be read
 bool sum_up(const OpenFile& file, std::uint64_t length, Trailer& made) {
   std::vector<std::uint64_t> words(1 << 15);  // stays in the cache
@@ -116,7 +129,9 @@ void check_seal(const std::filesystem::path& path) {
   const struct stat about = file.state();
   const auto size = static_cast<std::uint64_t>(about.st_size);
   Trailer found, own;
-  if (size < sizeof found || !file.read(&found, sizeof found, size - sizeof found) || found.mark != own.mark) return;
+  const bool marked = size >= sizeof found && file.read(&found, sizeof found, size - sizeof found) && found.mark == own.mark;
+  if (!marked && is_longer_than_its_content(file, size)) fail("BASE_5", {{"file", path.string()}});
+  if (!marked) return;
   static std::map<std::filesystem::path, std::tuple<ino_t, off_t, time_t, long>> known;
   const std::tuple state(about.st_ino, about.st_size, about.st_mtim.tv_sec, about.st_mtim.tv_nsec);
   if (const auto seen = known.find(path); seen != known.end() && seen->second == state) return;

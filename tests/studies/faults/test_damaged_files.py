@@ -70,6 +70,27 @@ class Short(Damaged):
             self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
             self.assertRegex(run.stderr, r"<F> <(BASE_5|STUDY_7)> .*DEPL_3.h5")
 
+    def test_blocks_of_zeros_at_the_end_are_told(self):
+        """As a power failure leaves them: the seal is gone with what is before it. An index without its end crashed the operator."""
+        (self.folder / "check.comm").write_text("POURSUITE()\nprint(RESULT.getField('DEPL', 3).getValues()[:1], CUT.getCoordinates())\nFIN()\n", encoding="utf-8")
+        readers = {(path, program.name): (program, order) for path, program, order in self.readers()}
+        for zeros in (8, 24, 32, 512, 2048, 4096):
+            for path in {path for path, _ in readers}:
+                sound = path.read_bytes()
+                if zeros > len(sound) - 512:
+                    continue
+                path.write_bytes(sound[:-zeros] + bytes(zeros))
+                for name in {name for other, name in readers if other == path}:
+                    with self.subTest(zeros=zeros, file=path.name, program=name):
+                        run = subprocess.run(readers[path, name], capture_output=True, text=True, errors="replace", timeout=60, check=False)
+                        self.assertEqual(run.returncode, 2, run.stderr)
+                        self.assertRegex(run.stderr, rf"<F> <BASE_5> .*{path.name}")
+                if path.name == "DEPL_3.h5":
+                    run = self.run_tool("check.comm", "--base", self.base)
+                    self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+                    self.assertRegex(run.stderr, rf"<F> <BASE_5> .*{path.name}")
+                path.write_bytes(sound)
+
     def test_an_earlier_version_of_a_result_is_told_too(self):
         """POURSUITE looks which field files it names."""
         (self.folder / "more.comm").write_text("POURSUITE()\nFIN()\n", encoding="utf-8")

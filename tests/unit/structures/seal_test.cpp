@@ -77,4 +77,17 @@ TEST_F(Sealed, AFileWithoutSealPasses) {
   }
 }
 
+TEST_F(Sealed, SomethingElseInThePlaceOfTheSealIsSeen) {
+  std::string content = std::string("\x89HDF\r\n\x1a\n", 8) + std::string(92, '\0');
+  content[13] = content[14] = 8;  // bytes of an offset and of a length
+  content[40] = 100;              // where HDF5 says that the file ends
+  for (const std::size_t zeros : {8, 16, 32, 50}) {
+    std::string spoilt = content + "LACONSUM" + std::string(24, 'x');
+    spoilt.replace(spoilt.size() - zeros, zeros, zeros, '\0');
+    refused(spoilt, std::to_string(zeros));
+  }
+  write(content);
+  EXPECT_NO_THROW(lacon::check_seal(file));
+}
+
 }  // namespace
