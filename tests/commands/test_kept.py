@@ -225,18 +225,26 @@ class Formulas(KeptTest):
 
     def test_expressions_whose_value_may_change_by_itself_are_never_kept(self):
         self.write("own.py", "def f(x):\n    return x\n")
+        self.write("numbers.txt", "3.0\n")
         for head, expression in (("from own import f", "f(X)"), ("def f(x): return x", "f(X)"), ("import own", "own.f(X)"),
                                  ("from time import time", "time() + X"), ("import numpy as np", "np.random.rand() * X"),
-                                 ("", "len(open('study.comm').read()) * X")):
+                                 ("", "len(open('study.comm').read()) * X"), ("from numpy import random as r", "r.rand() * X"),
+                                 ("import numpy as np", "np.loadtxt('numbers.txt') * X"), ("import numpy as np", "np.fromfile('numbers.txt', sep=' ')[0] * X"),
+                                 ("from numpy import genfromtxt", "genfromtxt('numbers.txt') * X"), ("from numpy import lib", "lib.npyio.loadtxt('numbers.txt') * X"),
+                                 ("from numpy import loadtxt as read", "read('numbers.txt') * X")):
             text = FORMULAS.replace("import math", head).replace("p[0] * X", expression)
             with self.subTest(expression=expression):
                 self.started(text)
                 self.assertEqual(self.started(text), ["stat_non_line"])
 
     def test_steady_modules(self):
-        text = FORMULAS.replace("import math", "import numpy as np").replace("p[0] * X", "np.sin(X) + math.pi + max(X, 0)").replace("p = [", "import math\np = [")
-        self.started(text)
-        self.assertEqual(self.started(text), [])
+        for expression in ("np.sin(X) + math.pi + max(X, 0)", "np.interp(X, np.array([0.0, 1.0]), q.T[0]).sum() + np.linalg.norm([X, np.pi]) + np.float64(1)",
+                           "piecewise(X, [X > 0], [lambda x: np.where(x > 1, x, 2)]) + Polynomial([1, 2])(X)"):
+            text = FORMULAS.replace("import math", "import numpy as np\nfrom numpy import piecewise\nfrom numpy.polynomial import Polynomial")
+            text = text.replace("p[0] * X", expression).replace("p = [", "import math\nq = np.eye(2)\np = [")
+            with self.subTest(expression=expression):
+                self.started(text)
+                self.assertEqual(self.started(text), [])
 
 
 class Continued(KeptTest):

@@ -12,8 +12,6 @@ Registry, key "made": id -> list of versions, each {"key", "stat" (size and time
 each field file of a result), "references", "alarms"}.
 """
 
-import ast
-import builtins
 import functools
 import hashlib
 import json
@@ -26,14 +24,10 @@ from .. import version
 from ..core import catalog, plugins
 from ..core.concepts import type_of
 from ..core.files import link
-from . import contents, names, seal
+from . import contents, names, seal, steady
 
 #: of the base: versions of concepts that were changed in place
 folder = "kept"
-
-#: what an expression may use without becoming one whose value may change from run to run
-_steady_builtins = frozenset("abs bool complex divmod float int len max min pow round sum".split())
-_steady_modules = frozenset(("math", "cmath", "numpy"))
 
 
 class Kept:
@@ -82,14 +76,13 @@ class Kept:
     def _formula(self, identifier):
         """(digest of the values that the names of a formula have now, ids among them); nothing where they may change by themselves."""
         expression = self.base.concept(identifier).expression()
-        if expression.lost or not _steady(expression.text):
+        if expression.lost or not steady.is_expression(expression.text):
             return None
         try:
             values = json.dumps({k: names.encode(v) for k, v in expression.values.items()}, sort_keys=True)
         except (names.NotKept, RecursionError):
             return None
-        modules = {m.partition(".")[0] for m in re.findall(r'\{"module": "([^"]*)"', values) + re.findall(r'\{"import": \["([^"]*)"', values)}
-        if not modules <= _steady_modules:
+        if not steady.are_values(expression.text, values):
             return None
         return _digest(values), re.findall(r'\{"concept": "([^"]*)"\}', values)
 
@@ -286,13 +279,6 @@ def file_key(path):
 
 def _listed(value):
     return value.tolist() if hasattr(value, "tolist") else value
-
-
-@functools.cache
-def _steady(expression):
-    """The value of an expression depends on its parameters and values alone."""
-    names = {node.id for node in ast.walk(ast.parse(expression, mode="eval")) if isinstance(node, ast.Name)}
-    return "random" not in expression and names.isdisjoint(set(vars(builtins)) - _steady_builtins)
 
 
 def _digest(value):
