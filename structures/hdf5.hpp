@@ -123,11 +123,14 @@ class Group {
   bool writing_ = false;
 };
 
-/// Open for reading; throws BASE_2 where the file is missing or is not HDF5, BASE_5 where it is not what its seal says
-/// (seal.hpp).
+/// Whose a file is: those of a base have seals, those of others end as they please.
+enum class Origin { base, elsewhere };
+
+/// Open for reading; throws BASE_2 where the file is missing or is not HDF5, of a base BASE_5 where it is not what its seal
+/// says (seal.hpp).
 class Reader : public Group {
  public:
-  explicit Reader(const std::filesystem::path& file);
+  explicit Reader(const std::filesystem::path& file, Origin origin = Origin::base);
 
  private:
   Handle file_;

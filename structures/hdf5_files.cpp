@@ -65,9 +65,9 @@ Handle new_file(const std::filesystem::path& path, bool in_memory = false) {
 
 }  // namespace
 
-Reader::Reader(const std::filesystem::path& file) : Group({}, file, false) {
+Reader::Reader(const std::filesystem::path& file, Origin origin) : Group({}, file, false) {
   prepare();
-  check_seal(file);
+  if (origin == Origin::base) check_seal(file);
   file_ = Handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file_ < 0) {
     std::error_code error;

@@ -46,11 +46,12 @@ class Source {
     return {};
   }
 
-  /// Go behind `$End<section>`, in version 1 `$END<SECTION>`.
-  void skip_section() {
+  /// Go behind `$End<section>`, in version 1 `$END<SECTION>`. `was_read`: nothing may be left before it.
+  void skip_section(bool was_read) {
     const std::string end = (section_ == "NOD" || section_ == "ELM" ? "$END" : "$End") + section_;
     const std::size_t at = text_.find(end, position_);
     if (at == std::string::npos) damaged(part("gmsh_no_end", {{"end", end}}));
+    if (was_read && text_.find_first_not_of(" \t\r\n", position_) < at) damaged(part("gmsh_more_there"));
     position_ = at + end.size();
     rest_of_line();
   }
@@ -124,6 +125,7 @@ class GmshReader {
   explicit GmshReader(Source& source) : source_(source) {}
 
   void read() {
+    const std::set<std::string> known = {"PhysicalNames", "Entities", "Nodes", "Elements", "NOD", "ELM"};
     bool nodes = false, elements = false;
     for (std::string section = source_.next_section(); !section.empty(); section = source_.next_section()) {
       if (section == "PartitionedEntities") fail("GMSH_6", {{"file", source_.file()}});
@@ -133,7 +135,7 @@ class GmshReader {
       if (section == "Elements") elements = true, version_4_ ? elements_4() : elements_2();
       if (section == "NOD") nodes = true, nodes_2();  // of version 1, as text in version 2
       if (section == "ELM") elements = true, elements_1();
-      source_.skip_section();
+      source_.skip_section(known.contains(section));
     }
     if (!nodes) source_.damaged(part("gmsh_no_nodes"));
     if (!elements || cells_.empty()) source_.damaged(part("file_no_cells"));
@@ -151,7 +153,7 @@ class GmshReader {
       fail("GMSH_2", {{"file", source_.file()}, {"version", std::to_string(version).substr(0, 3)}});
     source_.binary = mode != 0;
     if (source_.binary && (real_size != 8 || source_.integer() != 1)) source_.damaged(part("gmsh_other_machine"));
-    source_.skip_section();
+    source_.skip_section(true);
   }
 
   Mesh finish(std::string name);
@@ -207,11 +209,16 @@ class GmshReader {
     }
   }
 
-  /// How many blocks of nodes or cells follow: behind it are their counts, and from 4.1 on the least and largest tags.
-  std::size_t blocks_4() {
-    const std::size_t blocks = source_.count(source_.size(), 4);
-    for (int k = 0; k < (version_4_0_ ? 1 : 3); ++k) source_.size();
-    return blocks;
+  /// Read the blocks of nodes or cells: before them is how many there are, of what they have in all, and from 4.1 on the least
+  /// and largest tags. `read_block` returns how many it has.
+  template <class ReadBlock>
+  void blocks_4(const ReadBlock& read_block) {
+    const std::size_t blocks = source_.count(source_.size(), 4), total = source_.count(source_.size(), 4);
+    for (int k = 0; k < 2 && !version_4_0_; ++k) source_.size();
+    std::size_t found = 0;
+    for (std::size_t block = 0; block < blocks; ++block) found += read_block();
+    if (found != total)
+      source_.damaged(part("gmsh_other_total", {{"count", std::to_string(total)}, {"found", std::to_string(found)}}));
   }
   Entity entity_4() {
     const std::int64_t first = source_.integer(), second = source_.integer();
@@ -220,8 +227,7 @@ class GmshReader {
   std::int64_t tag_4() { return version_4_0_ ? source_.integer() : source_.size(); }
 
   void nodes_4() {
-    const std::size_t blocks = blocks_4();
-    for (std::size_t block = 0; block < blocks; ++block) {
+    blocks_4([&] {
       const std::int64_t dimension = entity_4().first;
       const bool parametric = source_.integer() != 0;
       const std::size_t n = source_.count(source_.size(), 8);
@@ -233,7 +239,8 @@ class GmshReader {
         for (std::int64_t k = 0; parametric && k < dimension; ++k) source_.real();
         add_node(tag, x, y, z);
       }
-    }
+      return n;
+    });
   }
 
   const catalog::CellRow& row_of(std::int64_t type) const {
@@ -293,8 +300,7 @@ class GmshReader {
   }
 
   void elements_4() {
-    const std::size_t blocks = blocks_4();
-    for (std::size_t block = 0; block < blocks; ++block) {
+    blocks_4([&] {
       const Entity entity = entity_4();
       const catalog::CellRow& row = row_of(source_.integer());
       const std::size_t n = source_.count(source_.size(), 4);
@@ -302,7 +308,8 @@ class GmshReader {
         const std::int64_t tag = tag_4();
         add_cell(row, tag, physical_of_[entity], [&] { return tag_4(); });
       }
-    }
+      return n;
+    });
   }
 
   std::string group_name(int dimension, std::int64_t tag) const {

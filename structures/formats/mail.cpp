@@ -216,6 +216,9 @@ class MailReader {
     std::string_view name = skip_head(keyword);
     if (name.empty()) name = item(keyword).text;
     if (name.empty()) words_.damaged(words_.line(), part("mail_group_without_name"));
+    if (!group_names_.emplace(keyword.text, name).second)
+      words_.damaged(words_.line(),
+                     part("group_is_there_twice", {{"keyword", std::string(keyword.text)}, {"group", shown(name)}}));
     Named& group = groups_.emplace_back(Named{name, keyword.text == "GROUP_NO", {}});
     for (Word member = item(keyword); !member.text.empty(); member = item(keyword)) group.members.push_back(member);
   }
@@ -245,6 +248,7 @@ class MailReader {
   std::vector<CellType> types_;
   std::vector<Word> cell_nodes_;
   std::vector<Named> groups_;
+  std::set<std::pair<std::string_view, std::string_view>> group_names_;  ///< keyword and name
 };
 
 /// Where the entities of a file go: by number, where their names are N1, N2, ... (or NO1, ...; M1, MA1, ... of cells) in any
@@ -300,18 +304,19 @@ Mesh MailReader::finish(std::string name) {
 }
 
 void MailReader::read_groups(std::vector<Group>& groups, bool of_nodes) {
-  std::map<std::string, std::pair<std::vector<std::int32_t>, std::unordered_set<std::int32_t>>> found;
+  std::map<std::string, std::vector<std::int32_t>> found;
   for (const Named& group : groups_) {
     if (group.of_nodes != of_nodes) continue;
     const std::string label = file_names_.read(std::string(group.group));
-    auto& [members, known] = found[label];
+    auto& members = found[label];
+    std::unordered_set<std::int32_t> known;
     for (const Word& member : group.members) {
       const std::int32_t n = number(of_nodes ? node_numbers_ : cell_numbers_, member, of_nodes ? Entity::node : Entity::cell,
                                     (of_nodes ? "GROUP_NO " : "GROUP_MA ") + label);
       if (known.insert(n).second) members.push_back(n);
     }
   }
-  for (auto& [label, both] : found) groups.push_back({label, std::move(both.first)});
+  for (auto& [label, members] : found) groups.push_back({label, std::move(members)});
 }
 
 void MailReader::add_named(std::vector<Group>& groups, const std::vector<std::string_view>& names,

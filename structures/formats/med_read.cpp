@@ -37,7 +37,7 @@ std::uint64_t bytes_of_file(const H5Group& root) {
 
 hdf5::Reader open(const fs::path& file) {
   if (first_bytes(file, 8) != "\x89HDF\r\n\x1a\n") fail("MED_2", {{"file", file.string()}, {"reason", part("file_not_hdf5")}});
-  return hdf5::Reader(file);
+  return hdf5::Reader(file, hdf5::Origin::elsewhere);
 }
 
 /// The root of a MED file of a version that is read.

@@ -126,6 +126,12 @@ class LireMaillage(OperatorTest):
             self.assertEqual({name: list(members) for name, members in mesh.cell_groups.items()}, {"BODY": [1, 2], "BOTTOM": [0], "BOTH": [0]})
             self.assertEqual({name: list(members) for name, members in mesh.node_groups.items()}, {"TIP": [2]})
 
+    def test_bytes_behind_the_end_are_nothing(self):
+        """Some copies add a line to it; of files of a base that is damage."""
+        write_med(self.file, SQUARE, {"QUAD4": [[0, 1, 2, 3]]})
+        self.file.write_bytes(self.file.read_bytes() + b"\n")
+        self.assertEqual(self.read().status, 0)
+
     def test_a_mesh_is_chosen_by_its_name(self):
         write_med(self.file, SQUARE, {"QUAD4": [[0, 1, 2, 3]]}, mesh="ONE")
         self.assertEqual(self.read(NOM_MED="ONE").status, 0)

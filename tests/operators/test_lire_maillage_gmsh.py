@@ -272,6 +272,30 @@ class LireMaillageGmsh(OperatorTest):
                 self.file.write_text(text.replace(old, new, 1), encoding="ascii")
                 self.refuses(identifier, word)
 
+    def test_refuses_counts_that_are_too_small(self):
+        """They lost cells without a word."""
+        for version, binary in FORMATS:
+            write_msh(self.file, version, binary, SQUARE, PLANE, NAMES)
+            whole = self.file.read_bytes()
+            for section in (b"Nodes", b"Elements", b"PhysicalNames", b"Entities"):
+                begin = whole.find(b"$" + section + b"\n") + len(section) + 2
+                if begin < len(section) + 2 or section == b"Entities" and binary:
+                    continue
+                if binary and version[0] == "4" and section != b"PhysicalNames":  # blocks, then entries
+                    counts = [(begin + 8 * k, begin + 8 * k + 8, struct.unpack_from("<Q", whole, begin + 8 * k)[0]) for k in (0, 1)]
+                    texts = [struct.pack("<Q", n - 1) for _, _, n in counts]
+                else:
+                    line = whole[begin:whole.index(b"\n", begin)]
+                    words = line.split()[:2 if version[0] == "4" else 1] if section != b"Entities" else line.split()[:4]
+                    places = [begin + len(b" ".join(words[:k])) + bool(k) for k in range(len(words))]
+                    counts = [(at, at + len(word), int(word)) for at, word in zip(places, words)]
+                    texts = [str(n - 1).encode() for _, _, n in counts]
+                for (first, end, count), text in zip(counts, texts):
+                    if count > 0:
+                        with self.subTest(version=version, binary=binary, section=section, place=first - begin):
+                            self.file.write_bytes(whole[:first] + text + whole[end:])
+                            self.refuses("GMSH_3")
+
     def test_refuses_files_cut_off_anywhere(self):
         for version, binary in FORMATS:
             write_msh(self.file, version, binary, SQUARE, PLANE, NAMES)

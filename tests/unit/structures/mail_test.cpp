@@ -50,9 +50,9 @@ const std::string plate =
     " S1\n"
     "FINSF\n"
     "GROUP_NO\n"
-    " CORNERS A B C A\n"
+    " CORNERS A B C A D\n"
     "FINSF\n"
-    "GROUP_NO CORNERS D FINSF\n"
+    "GROUP_NO BASE D FINSF\n"
     "FIN\n"
     "what stands behind FIN is not read\n";
 
@@ -147,6 +147,8 @@ TEST_F(Mail, WhatIsDamagedIsRefusedWithItsLine) {
            Case{"COOR_2D\n A 0. zero\nFINSF\nFIN\n", "MAIL_1", "2", "'zero'"},
            Case{"COOR_2D\n A 0. nan\nFINSF\nFIN\n", "MAIL_1", "2", "'nan'"},
            Case{"COOR_2D\n A 0. 0.\n A 1. 0.\nFINSF\nFIN\n", "MAIL_1", "3", "'A' is there twice"},
+           Case{nodes + "GROUP_NO\n X A\nFINSF\nGROUP_MA\n X\nFINSF\nGROUP_NO NOM=X\n B\nFINSF\nFIN\n", "MAIL_1", "11",
+                "GROUP_NO 'X' is there twice"},
            Case{"COOR_2D\n A 0. 0.\n", "MAIL_1", "3", "without FINSF"},
            Case{nodes, "MAIL_1", "5", "without FIN"},
            Case{nodes + "FIN\n", "MAIL_1", "5", "no cells"},
