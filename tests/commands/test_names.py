@@ -129,6 +129,10 @@ FIN()
     def test_two_names_of_one_concept(self):
         self.assertEqual(self.labels(f"A = {MATERIAL}\nB = A"), {"A": "material_1", "B": "material_1"})
 
+    def test_a_variable_names_a_concept_before_a_list_that_has_it(self):
+        text = f"box = dict(A=1)\nA = {MATERIAL}\nfor box in (dict(IT=A),):\n    B = {MATERIAL}\nprint('NAME', A.getName(), box['IT'].getName())\n"
+        self.assertIn("NAME A A", self.ok(self.run_study(f"DEBUT()\n{text}FIN()\n")).out)
+
     def test_assigning_again_leaves_what_was_made_on_the_old_concept(self):
         self.ok(self.run_study(STUDY + "M = CREA_MAILLAGE(MAILLAGE=M0, LINE_QUAD=_F(TOUT='OUI'))\nFIN()\n"))
         labels = self.registry()["labels"]

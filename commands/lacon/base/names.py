@@ -254,7 +254,8 @@ class Names:
     def _update_all_labels(self, base, pending):
         user = self.user()
         labels, containers, named = {}, {}, set()
-        for name, value in user.items():  # twice a command: names that mean no more than one concept, of which there may be thousands, go quickly
+        # a variable of its own names a concept before a list that has it, whichever came first
+        for name, value in sorted(user.items(), key=lambda item: not isinstance(item[1], Concept)):  # twice a command: names that mean no more than one concept, of which there may be thousands, go quickly
             alone = isinstance(value, Concept)
             if alone or isinstance(value, (list, tuple, dict)):
                 found = [(label, c) for label, c in ([(name, value)] if alone else concepts_of(name, value)) if not c.destroyed]
