@@ -34,6 +34,7 @@ check(CALC_FONCTION(COMB=_F(FONCTION=f, COEF=2.), LIST_PARA=L), [0, 1, 2, 3], [0
 check(CALC_FONCTION(ENVELOPPE=_F(FONCTION=(f, g))), [0, 1, 2, 3], [2, 1, 5, 9])
 check(CALC_FONCTION(ENVELOPPE=_F(FONCTION=(f, g), CRITERE='INF')), [0, 1, 2, 3], [0, 1, 0, -1])
 check(CALC_FONCTION(MULT=_F(FONCTION=(f, g))), [0, 1, 2, 3], [0, 1, 0, -9])
+check(CALC_FONCTION(MULT=(_F(FONCTION=f), _F(FONCTION=g))), [0, 1, 2, 3], [0, 1, 0, -9])
 check(CALC_FONCTION(INTEGRE=_F(FONCTION=f, COEF=1.)), [0, 1, 3], [1, 1.5, 11.5])
 check(CALC_FONCTION(ABS=_F(FONCTION=g)), [0, 2, 3], [2, 0, 1])
 check(CALC_FONCTION(PUISSANCE=_F(FONCTION=g, EXPOSANT=3)), [0, 2, 3], [8, 0, -1])

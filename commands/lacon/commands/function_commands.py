@@ -148,7 +148,7 @@ def _in_time(call):
 def calc_fonction(call):
     operation = next(name for name in _operations if name in call.keywords)
     factors = call.keywords[operation]
-    return _operations[operation](call, factors if operation in ("COMB", "COMPOSE", "ASSE") else factors[0])
+    return _operations[operation](call, factors if operation in ("COMB", "MULT", "COMPOSE", "ASSE") else factors[0])
 
 
 def _made(call, x, y, like):
@@ -227,9 +227,10 @@ def _inverse(call, factor):
     return _made(call, x, y, Piecewise(x, y, points.interpolation[::-1], left, right, points.component, points.parameter))
 
 
-def _mult(call, factor):
-    x = _abscissae(call, factor["FONCTION"])
-    return _made(call, x, [math.prod(f(v) for f in factor["FONCTION"]) for v in x], factor["FONCTION"][0].points())
+def _mult(call, factors):
+    concepts = [f for factor in factors for f in factor["FONCTION"]]
+    x = _abscissae(call, concepts)
+    return _made(call, x, [math.prod(f(v) for f in concepts) for v in x], concepts[0].points())
 
 
 def _moyenne(call, factor):
