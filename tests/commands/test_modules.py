@@ -30,6 +30,20 @@ FIN()
 
 
 class Modules(LauncherTest):
+    def test_numbers_that_aster_study_gives_to_commands_mean_nothing(self):
+        self.ok(self.run_study("""
+DEBUT(identifier='0:1')
+M = LIRE_MAILLAGE(identifier='0:2', UNITE=20)
+MAT = DEFI_MATERIAU(identifier='0:3', ELAS=_F(E=1, NU=0))
+DEFI_GROUP(identifier='0:4', reuse=M, MAILLAGE=M, CREA_GROUP_MA=_F(NOM='ALL', TOUT='OUI'))
+try:
+    DEFI_LIST_REEL(identifier=5, VALE=1.0)
+except AsterError as error:
+    assert error.id_message == 'KEYWORD_3' and 'DEFI_LIST_REEL/identifier' in error.messages[0].where, error
+FIN(identifier='0:6')
+"""))
+        self.assertNotIn("identifier", self.last_order("LIRE_MAILLAGE")["keywords"])
+
     def test_both_ways(self):
         run = self.ok(self.run_study(EITHER))
         self.assertIn("symbolic" if sympy else "literal", run.out)

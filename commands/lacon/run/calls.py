@@ -49,11 +49,13 @@ class Command:
             run.base.write(where)
         if starts and isinstance(given.get("CODE"), dict):  # until version 14: CODE=_F(NIV_PUB_WEB='INTERNET')
             given["CODE"] = "OUI"
-        reuse = given.pop("reuse", None)
+        reuse, identifier = given.pop("reuse", None), given.pop("identifier", None)  # the second one is AsterStudy's number of the command
         given = _with_concepts(given)
         if self.name == "DEFI_CONTACT":
             refuse_other_methods(self.name, given, where, labels.label(frame))
         keywords, problems, alarms = checker.complete(self.name, row, given, where)
+        if identifier is not None:
+            problems += checker.problems_of(f"{self.name}/identifier", {"type": "text"}, identifier, where)
         reused = self._reuse(row, reuse, given, keywords, where, problems)
         holder, named = next(((k, keywords[k]) for k, keyword in row.get("keyword", {}).items() if keyword.get("makes") and k in keywords), ("", None))
         if isinstance(named, CO) and (taken := run.names.taken(named.name, named)) is not None:
