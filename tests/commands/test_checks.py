@@ -238,7 +238,8 @@ class Readings(LauncherTest):
         for name, reason in (("nowhere/checks.json", "No such file"), (".", "Is a directory"), ("study.comm/checks.json", "No such file")):
             run = self.run_study("DEBUT()\nFIN()\n", "--json", name)
             self.assertEqual((run.status, "DEBUT" in run.out), (2, False), run.err)
-            self.assertIn(f"<F> <STUDY_3> '{name}' cannot be written: {reason}", run.err)
+            self.assertIn(f"<F> <STUDY_50> '{name}' cannot be written: {reason}", run.err)
+            self.assertIn("or give --json another place", run.err)
 
     def test_a_device_for_the_figures_stays_one(self):
         (self.work / "sink").symlink_to(os.devnull)

@@ -26,7 +26,26 @@ class Include(LauncherTest):
             self.refused(self.run_study("DEBUT()\nINCLUDE(UNITE=21)\n", "--unit", "21=part.21"), *words)
         self.refused(self.run_study("DEBUT()\nINCLUDE(DONNEE='none')\n"), "STUDY_14", "none")
         self.refused(self.run_study("DEBUT()\nINCLUDE(UNITE=22)\n"), "COMMAND_4")
+        self.write("a.comm", "INCLUDE(UNITE=23)\n")
+        self.write("b.comm", "INCLUDE(DONNEE='a.comm')\n")
+        round_and_round = self.run_study("DEBUT()\nINCLUDE(DONNEE='a.comm')\n", "--unit", "23=b.comm")
+        self.refused(round_and_round, "STUDY_49", "study.comm -> a.comm -> b.comm -> a.comm", "b.comm:1")
+        self.assertNotIn("RecursionError", round_and_round.err)
+        self.refused(self.run_study("DEBUT()\nINCLUDE(DONNEE='study.comm')\n"), "STUDY_49", "study.comm -> study.comm")
+        self.write("twice.comm", "X = 1\n")
+        self.ok(self.run_study("DEBUT()\nINCLUDE(DONNEE='twice.comm')\nINCLUDE(DONNEE='twice.comm')\nFIN()\n"))
         self.refused(self.run_study("DEBUT()\nINCLUDE(UNITE=22, DONNEE='part.21')\n"), "KEYWORD_6")
+
+    def test_a_command_file_without_anything_is_told(self):
+        """As one that a full disk has cut off: it ended as a study that had done its work."""
+        for text in ("", "\n\n", "# DEBUT()\n"):
+            self.refused(self.run_study(text), "STUDY_51", "study.comm")
+        self.write("study.com1", "")
+        self.write("study.comm", "DEBUT()\nFIN()\n")
+        run = self.launch("study.comm", "study.com1")
+        self.assertEqual((run.status, run.last), (0, "--- DIAGNOSTIC JOB : <A>_ALARM"), run.err)
+        self.assertIn("<A> <STUDY_52>", run.err)
+        self.assertIn("study.com1", run.err)
 
     def test_an_included_file_is_never_replaced(self):
         self.write("part.21", TABLE)

@@ -4,7 +4,7 @@ import math
 import os
 import signal
 
-from ..core import current
+from ..core import current, labels
 from ..core.catalog import part
 from ..core.messages import fail
 from ..tables import storage
@@ -21,6 +21,9 @@ def include(call):
             fail("STUDY_14", place, file=path, reason=part("file_not_there"))
     else:
         path = run.input_unit(k["UNITE"], place)
+    including = labels.files_under_way()
+    if os.path.realpath(path) in map(os.path.realpath, including):
+        fail("STUDY_49", place, files=" -> ".join(map(os.path.relpath, [*including, path])))
     run.protect(path)
     with current.others_take_turns():
         run.include(path)

@@ -28,6 +28,16 @@ def user_frame():
     return frame
 
 
+def files_under_way():
+    """The command files that are running, each included by the one before it."""
+    names, frame = [], user_frame()
+    while frame is not None:
+        if frame.f_code.co_name == "<module>" and frame.f_code.co_filename in sources:
+            names.append(frame.f_code.co_filename)
+        frame = frame.f_back
+    return names[::-1]
+
+
 def is_own(frame):
     """Whether a frame is the launcher's, or a formula's."""
     return frame.f_code.co_filename.startswith((package, "<formula>"))

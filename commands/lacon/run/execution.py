@@ -169,9 +169,21 @@ def run_files(study, files):
     for path, source in sources:
         for included in _included(path, source):
             study.protect(included)
+    empty = [path for path, source in sources if _is_empty(path, source)]
+    if len(empty) == len(sources):
+        fail("STUDY_51", empty[0], file=empty[0])
+    for path in empty:
+        study.inform("STUDY_52", path, file=path)
     for path, source in sources:
         values["__file__"] = path
         _run_file(study, path, source, values)
+
+
+def _is_empty(path, source):
+    """Whether a text has no statement: a file may have been cut off to nothing."""
+    with contextlib.suppress(AsterError):  # said where the text is run
+        return not _as_python(path, lambda: ast.parse(source, path)).body
+    return False
 
 
 def _included(path, source):

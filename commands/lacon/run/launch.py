@@ -109,7 +109,7 @@ def run_command_line(options, units):
 
     check_report()
     if report and (reason := why_not_written(report)):
-        messages.fail("STUDY_3", "--json", folder=options.json, reason=reason)  # before anything is computed
+        messages.fail("STUDY_50", "--json", option="--json", file=options.json, reason=reason)  # before anything is computed
 
     def work():
         with execution.signals(), execution.delivered(export.named), execution.time_limit(export.seconds()):
@@ -128,7 +128,7 @@ def run_command_line(options, units):
         try:
             checks.write_json(report, run.checks, diagnostic, status, run.timings.data())
         except OSError as error:
-            messages.show(messages.message("STUDY_3", options.json, folder=options.json, reason=error.strerror))
+            messages.show(messages.message("STUDY_50", options.json, option="--json", file=options.json, reason=error.strerror))
             status, diagnostic = status or outcome.user_error, diagnostic if status else "<F>_ERROR"
     if options.timings:
         print(run.timings.table())

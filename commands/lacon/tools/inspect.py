@@ -93,7 +93,7 @@ def write(shelf, occurrence, folder):
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        fail("STUDY_3", "lacon inspect --out", folder=folder, reason=error.strerror)
+        fail("STUDY_50", "lacon inspect --out", option="--out", file=folder, reason=error.strerror)
     earlier = {path: path.stat().st_ino for path in folder.iterdir() if _layer.fullmatch(path.name)}
     for number, (form, name) in enumerate(_files):
         keywords, problems, _ = checker.complete("IMPR_RESU", catalog.command("IMPR_RESU"),

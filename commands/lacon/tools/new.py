@@ -342,6 +342,6 @@ def run(arguments):
         try:
             target.write_text(made[0], encoding="utf-8")
         except OSError as error:
-            fail("STUDY_3", "lacon new --out", folder=target, reason=error.strerror)
+            fail("STUDY_50", "lacon new --out", option="--out", file=target, reason=error.strerror)
         print(part("starter_made", file=target, mesh=source))
     return status

@@ -65,7 +65,7 @@ def run(arguments):
                 stem.parent.mkdir(parents=True, exist_ok=True)
                 figure.savefig(path, dpi=options.dpi)
             except OSError as error:
-                fail("STUDY_3", "lacon plot --out", folder=path, reason=error.strerror)
+                fail("STUDY_50", "lacon plot --out", option="--out", file=path, reason=error.strerror)
             print(os.path.relpath(path))
     return outcome.done
 

@@ -39,7 +39,7 @@ def run(arguments):
     try:
         write_whole(target, filled(page, told, packing))
     except OSError as error:
-        fail("STUDY_3", "lacon report --out", folder=target, reason=error.strerror)
+        fail("STUDY_50", "lacon report --out", option="--out", file=target, reason=error.strerror)
     print(part("report_made", file=target, size=f"{target.stat().st_size / 1e6:.1f}", instants=len(told["drawn"]), fields=len(told["fields"])))
     if options.open:
         webbrowser.open(target.resolve().as_uri())
