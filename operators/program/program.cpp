@@ -58,6 +58,7 @@ bool write_status(const std::string& file, int status) {
   };
   json["seconds"] = sums(outcome.seconds);
   json["counts"] = sums(outcome.counts);
+  if (!std::cerr) json["log_lost"] = true;
   if (const std::optional<Blas> blas = present_blas())
     json["blas"] = {{"library", blas->library}, {"kernel", blas->kernel}, {"threads", blas->threads}};
   std::ofstream out(file);

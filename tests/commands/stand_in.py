@@ -139,7 +139,7 @@ def main():
         print(f"<{m['severity']}> <{m['id']}> {m['text']}\n    where: {where}\n    do:    {m.get('do', '')}", file=sys.stderr)
     status = behaviour.get("status", 0)
     pathlib.Path(sys.argv[sys.argv.index("--status") + 1]).write_text(json.dumps(
-        {"status": status, "messages": behaviour.get("messages", []), "seconds": {"work": 0.001}, "counts": {"factorisations": 3}}))
+        {"status": status, "messages": behaviour.get("messages", []), "seconds": {"work": 0.001}, "counts": {"factorisations": 3}, "log_lost": behaviour.get("log_lost", False)}))
     return status
 
 

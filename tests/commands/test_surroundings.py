@@ -43,6 +43,10 @@ class Surroundings(LauncherTest):
             self.assertEqual(run.returncode, 2, closed + run.stderr)
             self.assertEqual("<F> <STUDY_34> what the run says cannot be written: No space left on device" in run.stderr, closed == ">/dev/full", run.stderr)
             self.assertNotIn("Traceback", run.stderr)
+        os.environ["STAND_IN"] = '{"affe_modele": {"log_lost": true}}'  # what an operator says is lost as well
+        self.addCleanup(os.environ.pop, "STAND_IN")
+        run = self.shell("study.comm --unit 20=mesh.med 2>/dev/full")
+        self.assertEqual((run.returncode, run.stdout.splitlines()[-1]), (2, "--- DIAGNOSTIC JOB : <F>_ERROR"), run.stdout)
         self.assertEqual(self.shell("help DEFI_CONTACT >/dev/full").returncode, 2)
         self.ok(self.launch("study.comm", "--unit", "20=mesh.med"))
 

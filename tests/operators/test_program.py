@@ -1,5 +1,6 @@
 """What every operator's command line has: --version, --verbose, and the kernels of OpenBLAS that it chooses at its start."""
 
+import json
 import os
 import pathlib
 import re
@@ -94,6 +95,13 @@ class Program(TwoSquares):
         for name in ("read", "pairing", "elements", "factorisation"):
             self.assertAlmostEqual(sum(float(value) for what, value, unit in said if what == name and unit), run.seconds[name], delta=1e-4)
         self.assertEqual(sum(float(value) for what, value, unit in said if what == "solutions" and not unit), run.counts["solutions"])
+
+    def test_messages_that_cannot_be_written_are_told_in_the_outcome(self):
+        order, outcome = self.folder / "none.json", self.folder / "outcome.json"
+        for log, lost in (("/dev/full", True), (os.devnull, None)):
+            with open(log, "w", encoding="utf-8") as stream:
+                subprocess.run([BIN / "affe_modele", order, "--status", outcome], stderr=stream, timeout=10, check=False)
+            self.assertEqual(json.loads(outcome.read_text(encoding="utf-8")).get("log_lost"), lost)
 
     @unittest.skipUnless(UNKNOWN_PROCESSOR.exists(), "built with the address sanitizer, which looks for leaks in /proc")
     @unittest.skipUnless(os.geteuid() == 0 and subprocess.run(["unshare", "-m", "true"], check=False).returncode == 0, "needs a mount namespace")

@@ -36,12 +36,13 @@ _running = []  #: operators that have been started and not ended
 class Outcome:
     """What an operator's process came to."""
 
-    def __init__(self, status, messages, phases, counts, seconds):
+    def __init__(self, status, messages, phases, counts, seconds, log_lost=False):
         self.status = status  #: of the process; negative: the signal that ended it
         self.messages = messages
         self.phases = phases  #: name -> seconds, as the operator measured them
         self.counts = counts  #: name -> how many: factorisations, ...
         self.seconds = seconds  #: wall time of the process
+        self.log_lost = log_lost
 
 
 def order(command, study, keywords, where, result=None, units=None, written=()):
@@ -77,7 +78,8 @@ def run(program, made, study, checks=False):
                 fail("STUDY_38", made["source"], program=program, reason=error.strerror)
         _wait(process, study, ours, terminal)
     seconds = time.perf_counter() - start
-    return Outcome(process.returncode, *_read_status(status_file, f"{made['command']}, {made['source']}"), seconds)
+    *said, log_lost = _read_status(status_file, f"{made['command']}, {made['source']}")
+    return Outcome(process.returncode, *said, seconds, log_lost)
 
 
 def _write_order(made, study):
@@ -187,13 +189,13 @@ def _serve_formulas(stream, base):
 
 
 def _read_status(path, where):
-    """(messages, phases, counts) of what an operator wrote about itself; nothing where it did not come to that."""
+    """(messages, phases, counts, whether its log took no more) of what an operator wrote about itself; nothing where it did not come to that."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
         messages = [Message(m["severity"], m["id"], m["text"], m.get("do", ""), where) for m in data.get("messages", [])]
-        return messages, dict(data.get("seconds", {})), dict(data.get("counts", {}))
+        return messages, dict(data.get("seconds", {})), dict(data.get("counts", {})), data.get("log_lost", False)
     except (OSError, ValueError, KeyError, TypeError):
-        return [], {}, {}
+        return [], {}, {}, False
 
 
 def _forward(stream, ignored, terminal):

@@ -33,6 +33,12 @@ def unwritable(error):
     return found
 
 
+def refuse_lost_log():
+    """What an operator has said is lost. @throws OSError as if it had been said here"""
+    number = errno.EPIPE if readers_gone() else errno.ENOSPC
+    raise OSError(number, os.strerror(number))
+
+
 def take_back():
     """Output and log that a command file has closed, or put to None, are the process's own again, or lead nowhere."""
     for name in ("stdout", "stderr"):

@@ -6,7 +6,7 @@ import time
 from ..base import before, command_files, orders
 from ..commands.call import Call
 from ..commands.implementations import implementation, prepared
-from ..core import catalog, checker, current, labels, plugins
+from ..core import catalog, checker, current, labels, plugins, streams
 from ..core.concepts import CO, Concept, _F
 from ..core.messages import AsterError, InternalError, fail, message
 from ..objects.fields import Field
@@ -77,6 +77,8 @@ class Command:
             result, outcome = self._order(run, row, keywords, where, label, reused, named)
             run.timings.add(self.name, where, time.perf_counter() - started, outcome)
             run.count_alarms(outcome.messages)
+            if outcome.log_lost:
+                streams.refuse_lost_log()
         else:
             result = implementation(self.name)(Call(run, self.name, keywords, where, label, reused))
             if isinstance(result, Concept):
