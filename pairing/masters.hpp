@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -48,7 +47,9 @@ struct Masters {
         options(pairing_options),
         slave_extent(extent<D>(slave_skin)),
         steep(steep_cosine(pairing_options)),
-        tree(boxes_of_usable(rejected, examine)) {}
+        tree(boxes_of_usable(rejected, examine)) {
+    if (!options.ways) own_ways_ = std::make_unique<WaysWhenAsked>(std::vector{&slave, &master});
+  }
 
   /// Whether a couple that is further apart, or deeper in each other, than cells are large is seen through bodies:
   /// - one that overlaps where the straight way from a point of the slave to one of the master, behind it, leaves the body of
@@ -59,18 +60,16 @@ struct Masters {
   /// @param share of the slave cell  @param normal of the slave at `from`, unit
   bool is_through_bodies(double share, std::size_t slave_cell, Vec3 from, Vec3 normal, std::size_t master_cell,
                          double gap) const {
-    std::call_once(*ways_known_, [&] {
-      ways_.emplace(options.boundary ? std::vector{options.boundary} : std::vector{&slave, &master});
-    });
+    const WaysThrough& ways = (options.ways ? *options.ways : *own_ways_)();
     const std::int32_t own = body_of(slave, slave_cell), other = body_of(master, master_cell);
     if (gap > 0) {
       constexpr double near = 0.2, at_its_end = 1.05;  // of the way: facets are taken as flat, and those at both ends may bulge
       const Vec3 start = from + near * gap * normal;
-      return ways_->to_leave(own, start, normal) < (at_its_end - near) * gap ||
-             ways_->to_leave(other, start, normal) < (1 - 2 * near) * gap;
+      return ways.to_leave(own, start, normal) < (at_its_end - near) * gap ||
+             ways.to_leave(other, start, normal) < (1 - 2 * near) * gap;
     }
-    const bool slave_is_left = ways_->to_leave(own, from, -1.0 * normal) < -gap,
-               master_is_left = ways_->to_leave(other, from + gap * normal, normal) < -gap;
+    const bool slave_is_left = ways.to_leave(own, from, -1.0 * normal) < -gap,
+               master_is_left = ways.to_leave(other, from + gap * normal, normal) < -gap;
     return share < past_a_corner ? slave_is_left || master_is_left : slave_is_left && master_is_left;
   }
 
@@ -84,8 +83,7 @@ struct Masters {
   }
 
  private:
-  mutable std::optional<WaysThrough> ways_;  ///< at the present coordinates; few pairings ask for it
-  std::unique_ptr<std::once_flag> ways_known_ = std::make_unique<std::once_flag>();
+  std::unique_ptr<WaysWhenAsked> own_ways_;  ///< where there is no PairingOptions::ways
 
   template <class Examine>
   std::vector<Box<D>> boxes_of_usable(std::vector<RejectedCouple>& rejected, const Examine& examine) {

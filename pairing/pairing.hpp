@@ -16,6 +16,8 @@
 
 namespace lacon {
 
+class WaysWhenAsked;
+
 /// Every tolerance of pairing. All are dimensionless.
 struct PairingTolerances {
   double sliver = 1e-14;      ///< a contact cell is dropped below this fraction of its slave cell
@@ -92,9 +94,9 @@ struct PairingOptions {
   /// are some it gets no contact cell with masters of other faces that were walls (was_wall()). The caller owns both.
   const Ragged<std::int32_t>* in_front = nullptr;
   std::span<const std::int32_t> faces = {};  ///< of each master cell
-  /// The whole skin of all bodies, with Surface::body, for ways that lead through them; null: what both skins are of it. The
-  /// caller owns it.
-  const Surface* boundary = nullptr;
+  /// Ways through bodies at the present coordinates, by their whole skins, with Surface::body; null: by what both skins are of
+  /// these. The caller owns them.
+  const WaysWhenAsked* ways = nullptr;
   /// Angle between the slave's normal and the opposite of the master's, in degrees, from which on a couple counts less and less
   /// (steepness.hpp); 90: none does.
   double steep_angle = 85;

@@ -1,6 +1,9 @@
 #pragma once
 // How thick bodies are behind their skins, and what lies on the way through them.
 #include <cstdint>
+#include <mutex>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "lacon/pairing/box_tree.hpp"
@@ -25,6 +28,21 @@ class WaysThrough {
   std::vector<const Surface*> skins_;
   std::vector<Cell> cells_;
   BoxTree<3> tree_;
+};
+
+/// Likewise at the present coordinates, made when the first one asks, whichever thread it is: few pairings do.
+class WaysWhenAsked {
+ public:
+  explicit WaysWhenAsked(std::vector<const Surface*> skins) : skins_(std::move(skins)) {}
+  const WaysThrough& operator()() const {
+    std::call_once(asked_, [&] { ways_.emplace(skins_); });
+    return *ways_;
+  }
+
+ private:
+  std::vector<const Surface*> skins_;
+  mutable std::once_flag asked_;
+  mutable std::optional<WaysThrough> ways_;
 };
 
 /// Of each cell of a skin how far it is from its middle, against its normal, to where that leaves the body again, at the

@@ -11,7 +11,8 @@ void seal(const std::filesystem::path& file);
 /// Make a file of a content, and its seal. Throws BASE_3.
 void write_with_seal(const std::filesystem::path& file, std::span<const char> content);
 
-/// Refuse a file whose content is not that of its seal, and one that has something else in the place of a seal (BASE_5). One
+/// Refuse a file whose content is not that of its seal, and one that has something else in the place of a seal, behind
+/// the end that its superblock (of version 0, which Lacon writes) gives (BASE_5). One
 /// that ends with its content passes: HDF5 tools drop the seal when they change a file. Each state of a file is looked at once
 /// in a process.
 void check_seal(const std::filesystem::path& file);

@@ -135,7 +135,6 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
               .current_jacobian = data.jacobian == "ACTUALISE",
               .pairing = {.distance_limit = data.distance_limit,
                           .depth_limit = data.distance_limit > 0 ? -1 : deepest_overlap,
-                          .boundary = &boundary_,
                           .drops_slivers = !contact.frozen_gap}};
     zone.slave.rest = zone.master.rest = rest_;
     zone.slave.body = zone.master.body = body_;
@@ -302,13 +301,16 @@ void ContactGeometry::look(std::vector<ZonePairing>* records) {
       zone.cuts.assign(zone.slave.size(), {});
       zone.slave.cuts = zone.cuts;
     }
+  const WaysWhenAsked ways({&boundary_});
   for (Zone& zone : zones_) {
     const auto z = static_cast<std::size_t>(&zone - zones_.data());
     zone.slave.normals = {};
     if (contact_.smoothing) normals_[z] = nodal_normals(zone.slave);
     zone.slave.normals = normals_[z];
     // a few blocks for each thread at a time: points of a large skin are never in memory together
-    PairingInParts pairing(zone.slave, zone.master, zone.pairing);
+    PairingOptions options = zone.pairing;
+    options.ways = &ways;
+    PairingInParts pairing(zone.slave, zone.master, options);
     ZonePairing* const record = records ? &records->emplace_back() : nullptr;
     const std::size_t n_blocks = n_loop_blocks(zone.slave.size(), block), threads = n_threads();
     const std::size_t first_cell = cells_.size(), first_coupling = coupling_.size();

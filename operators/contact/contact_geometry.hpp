@@ -248,7 +248,7 @@ class ContactGeometry {
   std::vector<double> rest_;                             ///< likewise, at rest
   std::vector<double> walls_at_;                         ///< walls_decided_at()
   std::vector<std::int32_t> body_;                       ///< (n_nodes): Bodies::of
-  Surface boundary_;                                     ///< PairingOptions::boundary
+  Surface boundary_;                                     ///< of the bodies: boundary_of()
   std::vector<Zone> zones_;
   std::vector<std::vector<double>> normals_;  ///< of each zone, at the nodes (LISSAGE)
   std::vector<std::vector<double>> offsets_;  ///< likewise

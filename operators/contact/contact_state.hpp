@@ -254,7 +254,8 @@ class ContactState {
   /// Of a zone, where patches that are not pressed flat, with others around them that are open, carry most of its force.
   std::optional<CoarseContact> coarse(std::int32_t zone, const Patchwise& patches) const;
   /// Of a zone, where its pressures alternate by so much that it is worth an alarm.
-  /// @param has_facets whether its skins are curved and their cells are not; asked where rows alternate
+  /// @param has_facets whether its skins are curved and their cells are not; asked where rows alternate, or triangles are
+  /// scattered
   std::optional<AlternatingPressures> alternation(std::int32_t zone, const Patchwise& patches,
                                                   const std::function<bool()>& has_facets) const;
   /// Whether the body of a patch is several times as stiff as what it faces.

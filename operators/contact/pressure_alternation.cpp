@@ -46,7 +46,8 @@ std::optional<AlternatingPressures> PressureAlternation::measure(std::span<const
                                                                  const std::vector<bool>& whole,
                                                                  const std::vector<bool>& pressed) const {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  constexpr int least_couples = 8;  // of fewer a product says little
+  constexpr int least_couples = 8;    // of fewer a product says little
+  constexpr int least_pressing = 10;  // of fewer exact pressures are scattered as well
   std::vector<double> mean;
   for (const std::vector<std::size_t>& ring : rings_) {
     double force = 0, measure = 0;
@@ -81,7 +82,7 @@ std::optional<AlternatingPressures> PressureAlternation::measure(std::span<const
   if (couples < least_couples || squares == 0) return std::nullopt;
   found.share = product < 0 ? std::sqrt(-product / couples / (squares / known)) : 0;
   found.pressing = static_cast<double>(pressing) / known;
-  found.scatter = std::sqrt(found.scatter / squares);
+  found.scatter = pressing < least_pressing ? 0 : std::sqrt(found.scatter / squares);
   return found;
 }
 

@@ -20,7 +20,7 @@ struct AlternatingPressures {
   std::size_t patch;  ///< furthest from its smooth pressure
   AlternatingBy by;
   double pressing = 1;  ///< part of the patches looked at
-  double scatter = 0;   ///< root of the mean square of distances from smooth pressures, over that of the pressure
+  double scatter = 0;   ///< root of the mean square of distances from smooth pressures, over that of the pressure; 0 of few
 };
 
 /// A skin of linear triangles has two patches for each of its vertices. Pressures that alternate from patch to patch press on

@@ -41,5 +41,9 @@ def put_back_all(base):
     told = base.kept.stand()
     for identifier in base.ids():
         copy = _copy(base, identifier)
-        if copy.exists() and identifier not in told and identifier not in base.unfinished.ids():
+        if not copy.exists() or identifier in base.unfinished.ids():
+            continue
+        if identifier in told:
+            copy.unlink()  # killed behind the registry: the next one must not find it
+        else:
             put_back(base, identifier, copy)

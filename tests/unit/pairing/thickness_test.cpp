@@ -238,7 +238,8 @@ TEST(WaysThrough, GoByTheWholeBoundaryWhereItIsKnown) {
     body.resize(boundary.coordinates.size() / 3, height >= -1 ? 7 : 8);
   }
   boundary.surface.body = body;
-  const Pairing found = pair(slave, master, {.depth_limit = 4, .boundary = &boundary.view()});
+  const WaysWhenAsked ways({&boundary.view()});
+  const Pairing found = pair(slave, master, {.depth_limit = 4, .ways = &ways});
   EXPECT_EQ(found.cells.size(), 0U);
   EXPECT_EQ(found.count(Rejection::too_deep), 1);
 }
