@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "lacon/operators/contact/contact_geometry.hpp"
+#include "lacon/pairing/thickness.hpp"
 #include "lacon/structures/parallel.hpp"
 
 namespace lacon {
@@ -98,6 +99,7 @@ std::vector<ContactGeometry::Variation> ContactGeometry::vary(std::span<const st
     if (const std::int32_t patch = contact_.slaves[cell.slave].patch; order[patch] > left[patch])
       all.push_back(frozen_variation(cell));
   if (contact_.frozen_gap) return all;
+  const WaysWhenAsked ways({&boundary_});
   for (std::size_t z = 0; z < zones_.size(); ++z) {
     const Zone& zone = zones_[z];
     std::vector<std::size_t> slaves;  // cells of the zone
@@ -105,6 +107,7 @@ std::vector<ContactGeometry::Variation> ContactGeometry::vary(std::span<const st
       if (left[contact_.slaves[zone.slaves[i]].patch] > 0) slaves.push_back(i);
     if (slaves.empty()) continue;
     PairingOptions options = zone.pairing;
+    options.ways = &ways;
     options.traced = true;
     PairingInParts pairing(zone.slave, zone.master, options);
     const std::size_t before = all.size();
