@@ -5,6 +5,7 @@ function(lacon_gtest_suites name)
   cmake_parse_arguments(SUITES "" "" "PROPERTIES" ${ARGN})
   set(suites "${CMAKE_CURRENT_BINARY_DIR}/unit_${name}_suites.cmake")
   set(all "${CMAKE_CURRENT_BINARY_DIR}/unit_${name}_tests.cmake")
+  set_property(TARGET unit_${name} APPEND PROPERTY LINK_DEPENDS "${CMAKE_CURRENT_FUNCTION_LIST_FILE}")
   add_custom_command(TARGET unit_${name} POST_BUILD VERBATIM BYPRODUCTS "${suites}"
     COMMAND "${CMAKE_COMMAND}" "-Dexecutable=$<TARGET_FILE:unit_${name}>" "-Dprefix=unit/${name}/" "-Dproperties=${SUITES_PROPERTIES}"
             "-Dsuites=${suites}" -P "${CMAKE_CURRENT_FUNCTION_LIST_FILE}")

@@ -12,8 +12,8 @@
 #include <optional>
 
 #include "lacon/catalog/messages.hpp"
-#include "lacon/operators/evolution/behaviours.hpp"
-#include "lacon/operators/evolution/static_problem.hpp"
+#include "lacon/operators/evolution/problem/behaviours.hpp"
+#include "lacon/operators/evolution/problem/static_problem.hpp"
 #include "lacon/operators/fields/criteria.hpp"
 #include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"

@@ -11,10 +11,10 @@
 
 #include "lacon/elements/reference.hpp"
 #include "lacon/elements/registry.hpp"
-#include "lacon/operators/contact/gap_variation.hpp"
 #include "lacon/operators/contact/kept_pairing.hpp"
 #include "lacon/operators/contact/mirrors.hpp"
-#include "lacon/operators/contact/normal_variation.hpp"
+#include "lacon/operators/contact/variation/gap_variation.hpp"
+#include "lacon/operators/contact/variation/normal_variation.hpp"
 #include "lacon/pairing/pairing.hpp"
 #include "lacon/structures/concepts.hpp"
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "lacon/operators/evolution/convergence.hpp"
-#include "lacon/operators/evolution/effort.hpp"
-#include "lacon/operators/evolution/instant_failure.hpp"
+#include "lacon/operators/evolution/newton/convergence.hpp"
+#include "lacon/operators/evolution/newton/effort.hpp"
+#include "lacon/operators/evolution/newton/instant_failure.hpp"
 #include "lacon/structures/concepts.hpp"
 
 namespace lacon {

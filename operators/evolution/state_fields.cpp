@@ -13,7 +13,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/contact/contact_field.hpp"
-#include "lacon/operators/evolution/prestrain.hpp"
+#include "lacon/operators/evolution/problem/prestrain.hpp"
 #include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/internal_variables.hpp"
 #include "lacon/structures/displacement.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "lacon/operators/evolution/equilibrium.hpp"
+#include "lacon/operators/evolution/newton/equilibrium.hpp"
 #include "lacon/structures/base.hpp"
 
 namespace lacon {

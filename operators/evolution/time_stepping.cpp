@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "lacon/catalog/wording.hpp"
-#include "lacon/operators/evolution/instant_failure.hpp"
+#include "lacon/operators/evolution/newton/instant_failure.hpp"
 
 namespace lacon {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lacon/catalog/messages.hpp"
-#include "lacon/operators/evolution/effort.hpp"
+#include "lacon/operators/evolution/newton/effort.hpp"
 #include "lacon/structures/concepts.hpp"
 
 namespace lacon {

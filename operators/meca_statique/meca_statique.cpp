@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "lacon/catalog/messages.hpp"
-#include "lacon/operators/evolution/linear_solver.hpp"
-#include "lacon/operators/evolution/newton.hpp"
+#include "lacon/operators/evolution/newton/linear_solver.hpp"
+#include "lacon/operators/evolution/newton/newton.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
 #include "lacon/operators/program/checking.hpp"
 #include "lacon/operators/program/program.hpp"

@@ -12,6 +12,8 @@ FLOORS = {"catalog": 0, "structures": 1, "elements": 2, "pairing": 3, "assembly"
 TOP = (*FLOORS, "commands", "tests", "docs", "cmake")
 #: the folders that operators share, from the ground up
 SHARED = ["program", "meshing", "fields", "contact", "evolution"]
+#: the folders within two of them, likewise; "": the files beside them
+WITHIN = {"contact": ["variation", ""], "evolution": ["problem", "newton", "", "observers"]}
 #: lines of a C++ file of a room: what is longer is two things
 LONGEST = 500
 
@@ -52,6 +54,20 @@ class House(unittest.TestCase):
                     wrong.append(f"{path.relative_to(SOURCE)} includes {included}")
         self.assertEqual(wrong, [])
 
+    def test_folders_within_a_shared_one_include_lower_ones(self):
+        wrong = []
+        seen = set()
+        for shared, order in WITHIN.items():
+            room = SOURCE / "operators" / shared
+            for path in sorted(room.rglob("*.[ch]pp")):
+                own = str(path.parent.relative_to(room)).strip(".")
+                for included in re.findall(rf'#include "lacon/operators/{shared}/(?:(\w+)/)?\w+\.hpp"', path.read_text()):
+                    seen.add((own, included))
+                    if order.index(included) > order.index(own):
+                        wrong.append(f"{path.relative_to(SOURCE)} includes of {included or shared}")
+        self.assertIn(("newton", "problem"), seen)
+        self.assertEqual(wrong, [])
+
     def test_a_folder_without_main_is_a_shared_one(self):
         folders = {path.name for path in (SOURCE / "operators").iterdir() if path.is_dir() and not (path / "main.cpp").exists()}
         self.assertEqual(folders - set(SHARED), set())
@@ -75,7 +91,8 @@ class House(unittest.TestCase):
         self.assertEqual(long, [])
 
     def test_every_room_has_a_page(self):
-        rooms = [*FLOORS, "commands", "tests", *(f"operators/{name}" for name in SHARED)]
+        rooms = [*FLOORS, "commands", "tests", *(f"operators/{name}" for name in SHARED),
+                 *(f"operators/{shared}/{name}" for shared, order in WITHIN.items() for name in order)]
         missing = [room for room in rooms if (SOURCE / room).is_dir() and not (SOURCE / room / "README.md").exists()]
         self.assertEqual(missing, [])
 

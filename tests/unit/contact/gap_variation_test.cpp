@@ -1,5 +1,5 @@
 // Derivatives of integrated gaps against differences of what pairing and integration give.
-#include "lacon/operators/contact/gap_variation.hpp"
+#include "lacon/operators/contact/variation/gap_variation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 #include <random>
 
-#include "lacon/operators/contact/normal_variation.hpp"
+#include "lacon/operators/contact/variation/normal_variation.hpp"
 #include "lacon/pairing/normals.hpp"
 #include "lacon/pairing/pairing.hpp"
 

@@ -1,6 +1,6 @@
 // Small linear complementarity problems: against all choices of pairs, with pairs that change one by one, and without a
 // solution.
-#include "lacon/operators/evolution/complementarity.hpp"
+#include "lacon/operators/evolution/newton/complementarity.hpp"
 
 #include <gtest/gtest.h>
 

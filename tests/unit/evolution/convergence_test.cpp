@@ -1,5 +1,5 @@
 // When an instant is solved: figures in, verdict out.
-#include "lacon/operators/evolution/convergence.hpp"
+#include "lacon/operators/evolution/newton/convergence.hpp"
 
 #include <gtest/gtest.h>
 

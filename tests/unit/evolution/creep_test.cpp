@@ -1,12 +1,12 @@
 // Iterations that creep: how their resistance goes up and down, and that it leaves no trace in what they find.
-#include "lacon/operators/evolution/creep.hpp"
+#include "lacon/operators/evolution/newton/creep.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "lacon/assembly/mumps_engine.hpp"
-#include "lacon/operators/evolution/newton.hpp"
+#include "lacon/operators/evolution/newton/newton.hpp"
 #include "two_squares.hpp"
 
 namespace lacon::test {

@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "lacon/operators/evolution/dependent_relations.hpp"
+#include "lacon/operators/evolution/problem/dependent_relations.hpp"
 
 namespace lacon {
 namespace {

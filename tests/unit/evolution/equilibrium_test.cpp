@@ -1,5 +1,5 @@
 // Forces and matrix at a state; relations and following loads in them.
-#include "lacon/operators/evolution/equilibrium.hpp"
+#include "lacon/operators/evolution/newton/equilibrium.hpp"
 
 #include <gtest/gtest.h>
 

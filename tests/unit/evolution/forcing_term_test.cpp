@@ -1,5 +1,5 @@
 // How exactly inexact Newton solves its linear systems.
-#include "lacon/operators/evolution/forcing_term.hpp"
+#include "lacon/operators/evolution/newton/forcing_term.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lacon/operators/evolution/line_search.hpp"
+#include "lacon/operators/evolution/newton/line_search.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lacon/operators/evolution/linear_solver.hpp"
+#include "lacon/operators/evolution/newton/linear_solver.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include <utility>
 
-#include "lacon/operators/evolution/equilibrium.hpp"
-#include "lacon/operators/evolution/free_bodies.hpp"
+#include "lacon/operators/evolution/newton/equilibrium.hpp"
+#include "lacon/operators/evolution/problem/free_bodies.hpp"
 #include "two_squares.hpp"
 
 namespace lacon {

@@ -1,5 +1,5 @@
 // Patches that lose their master where they press: once is a slide off an edge, twice is what no status satisfies.
-#include "lacon/operators/evolution/lost_masters.hpp"
+#include "lacon/operators/evolution/newton/lost_masters.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Which matrix an iteration goes on with.
-#include "lacon/operators/evolution/matrix_choice.hpp"
+#include "lacon/operators/evolution/newton/matrix_choice.hpp"
 
 #include <gtest/gtest.h>
 

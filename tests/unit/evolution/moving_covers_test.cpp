@@ -1,5 +1,5 @@
 // A symmetric matrix and what it lacks of ends that move: the sum is solved by solutions of the former.
-#include "lacon/operators/evolution/moving_covers.hpp"
+#include "lacon/operators/evolution/newton/moving_covers.hpp"
 
 #include <gtest/gtest.h>
 

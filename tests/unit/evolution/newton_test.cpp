@@ -1,5 +1,5 @@
 // One instant: two squares pressed together, and a body at large strains.
-#include "lacon/operators/evolution/newton.hpp"
+#include "lacon/operators/evolution/newton/newton.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/catalog/messages.hpp"
-#include "lacon/operators/evolution/instant_failure.hpp"
+#include "lacon/operators/evolution/newton/instant_failure.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
 #include "lacon/structures/hdf5.hpp"
 #include "two_squares.hpp"

@@ -1,4 +1,4 @@
-#include "lacon/operators/evolution/prediction.hpp"
+#include "lacon/operators/evolution/newton/prediction.hpp"
 
 #include <gtest/gtest.h>
 

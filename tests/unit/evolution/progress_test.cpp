@@ -1,5 +1,5 @@
 // Where a computation is, in words: share of the list, time, and the line as a whole.
-#include "lacon/operators/evolution/progress.hpp"
+#include "lacon/operators/evolution/observers/progress.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // RESI_REFE_RELA: the force by which a degree of freedom is measured.
-#include "lacon/operators/evolution/reference_forces.hpp"
+#include "lacon/operators/evolution/problem/reference_forces.hpp"
 
 #include <gtest/gtest.h>
 

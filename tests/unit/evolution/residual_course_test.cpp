@@ -1,4 +1,4 @@
-#include "lacon/operators/evolution/residual_course.hpp"
+#include "lacon/operators/evolution/newton/residual_course.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include "../assembly/hexa_block.hpp"
 #include "lacon/assembly/parts/cells.hpp"
 #include "lacon/assembly/parts/solid_parts.hpp"
-#include "lacon/operators/evolution/restart.hpp"
+#include "lacon/operators/evolution/observers/restart.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
 
 namespace lacon {

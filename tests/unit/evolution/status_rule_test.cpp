@@ -1,5 +1,5 @@
 // Which statuses an iteration goes on with: plain changes, sets that come back, and where they cannot end.
-#include "lacon/operators/evolution/status_rule.hpp"
+#include "lacon/operators/evolution/newton/status_rule.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "lacon/assembly/mumps_engine.hpp"
-#include "lacon/operators/evolution/system.hpp"
+#include "lacon/operators/evolution/problem/system.hpp"
 
 namespace lacon {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "lacon/operators/evolution/instant_failure.hpp"
+#include "lacon/operators/evolution/newton/instant_failure.hpp"
 #include "lacon/operators/evolution/time_stepping.hpp"
 
 namespace lacon {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "lacon/operators/evolution/static_problem.hpp"
+#include "lacon/operators/evolution/problem/static_problem.hpp"
 
 namespace lacon::test {
 

@@ -1,5 +1,5 @@
 // Which instants follow an equilibrium that is not stable.
-#include "lacon/operators/evolution/unstable_path.hpp"
+#include "lacon/operators/evolution/newton/unstable_path.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What is kept of zones goes into a group and comes back.
-#include "lacon/operators/evolution/zone_records.hpp"
+#include "lacon/operators/evolution/observers/zone_records.hpp"
 
 #include <gtest/gtest.h>
 
