@@ -231,6 +231,8 @@ class ContactState {
   HeldOverlap held_overlap() const;
   /// Whether an open patch may hold a body that is loose otherwise: its gap is within ContactTolerances::holding_gap.
   bool may_hold(std::size_t patch, const Patchwise& patches) const;
+  /// Whether it would but that its master covers too little of it.
+  bool lacks_cover(std::size_t patch, const Patchwise& patches) const;
   /// Whether gaps of patches that hold a body together may differ by so much.
   bool is_as_near(std::size_t patch, double difference) const { return difference <= tolerances_.as_near * size_[patch]; }
   /// A node of the loose body that meets at a patch: of its own, or of a master's; -1 where there is none.
@@ -281,6 +283,8 @@ class ContactState {
  private:
   /// What hangs on the contact cells alone.
   void note_geometry();
+  /// Whether an open patch is within ContactTolerances::holding_gap of its master.
+  bool is_near(std::size_t patch, const Patchwise& patches) const;
   /// Of a zone the patch that is pierced deepest, over its size, and by more than a limit of its own.
   std::optional<PiercedPatch> deepest(std::int32_t zone, const std::function<double(std::size_t patch)>& limit) const;
 

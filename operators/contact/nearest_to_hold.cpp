@@ -43,9 +43,17 @@ double extent(const Hold& hold) {
 
 }  // namespace
 
-bool ContactState::may_hold(std::size_t patch, const Patchwise& patches) const {
-  return patches.status[patch] != Status::active && !held_open_[patch] && takes_contact(patch) &&
+bool ContactState::is_near(std::size_t patch, const Patchwise& patches) const {
+  return patches.status[patch] != Status::active && !held_open_[patch] &&
          geometry_.gap(patch) <= tolerances_.holding_gap * size_[patch];
+}
+
+bool ContactState::may_hold(std::size_t patch, const Patchwise& patches) const {
+  return takes_contact(patch) && is_near(patch, patches);
+}
+
+bool ContactState::lacks_cover(std::size_t patch, const Patchwise& patches) const {
+  return is_covered(patch) && !takes_contact(patch) && is_near(patch, patches);
 }
 
 std::int32_t ContactState::node_at(std::size_t patch, const std::function<bool(std::int32_t node)>& is_loose) const {

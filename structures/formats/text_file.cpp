@@ -1,9 +1,9 @@
 #include "lacon/structures/formats/text_file.hpp"
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "lacon/catalog/messages.hpp"
@@ -16,8 +16,16 @@ namespace fs = std::filesystem;
 
 std::string read_text(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail("BASE_2", {{"file", file.string()}, {"reason", std::strerror(errno)}});
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const auto refuse = [&] { fail("BASE_2", {{"file", file.string()}, {"reason", std::strerror(errno)}}); };
+  if (!stream) refuse();
+  std::string text;
+  std::array<char, 1 << 16> block;
+  do {
+    stream.read(block.data(), block.size());
+    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+  } while (stream);
+  if (stream.bad()) refuse();  // a folder, a disk that fails
+  return text;
 }
 
 std::string first_bytes(const fs::path& mesh_file, std::size_t count) {

@@ -179,6 +179,15 @@ class LooseBodies(StudyTest):
         self.assertAlmostEqual(moved, -13 / (210e3 / (1 - 0.3**2)), delta=5e-6)
         self.assertNotIn("<A>", said)
 
+    def test_a_needle_that_covers_too_little_of_a_patch_is_told(self):
+        """By 0.8 % of one, where contact is taken from 2 % on; a wider one stands."""
+        low = block("QUAD4", np.linspace(-1, 2, 4), np.linspace(-1, 0, 2), None, "LOW", {"top": "SKIN", "bottom": "BASE"})
+        for width, status in ((0.008, 3), (0.08, 0)):
+            needle = block("QUAD4", np.linspace(0.3, 0.3 + width, 3), np.linspace(0, 0.1, 3), None, "BODY", {"bottom": "WALL", "top": "TOP"})
+            _, _, said = self.solve(union([needle, low]), 0.0, 1.0, '_F(GROUP_MA="BODY", DX=0.0),', status=status)
+            told = re.search(r"<SOLVER_3> .*slave cells (\w+) of SKIN\) see their master on ([\d.]+) % of their size", said)
+            self.assertEqual(told and told[2], "0.8" if status else None, said[-2000:])
+
     def table(self, gaps):
         """A plate over two feet, each lower than the other one's gap would have it."""
         plate = block("QUAD8", np.linspace(0, 10, 11), np.linspace(0, 1, 3), None, "BODY", {"bottom": "SKIN", "top": "TOP"})

@@ -156,6 +156,8 @@ class Newton {
   bool parts_a_zone(const std::vector<Status>& before, const std::vector<Status>& wanted) const;
   /// Slave cells of patches, the first ones, with the skin they belong to.
   std::string cells_of(const std::vector<std::size_t>& patches) const;
+  /// Patches near some loose bodies that would hold them, if more of them were covered; nothing where there are none.
+  std::string too_little_covered(const std::vector<LooseMotion>& loose, const StaticState& state) const;
   /// How deep points of each zone lie in its master, over the size of their patch, where nothing presses there.
   std::vector<double> depths(const StaticState& state) const;
   /// Throws EVOLUTION_63 where a body has gone through another one in this instant.

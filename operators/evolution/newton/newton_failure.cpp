@@ -90,6 +90,19 @@ std::string Newton::cells_of(const std::vector<std::size_t>& patches) const {
   return text + (patches.size() > most ? ", ..." : "");
 }
 
+std::string Newton::too_little_covered(const std::vector<LooseMotion>& loose, const StaticState& state) const {
+  const auto is_loose = [&](std::int32_t node) {
+    return std::ranges::any_of(loose, [&](const LooseMotion& motion) { return motion.bodies.contains(bodies_.of(node)); });
+  };
+  std::vector<std::size_t> patches;
+  for (std::size_t patch = 0; contact() && patch < contact()->n_patches(); ++patch)
+    if (contact()->lacks_cover(patch, state.patches) && contact()->node_at(patch, is_loose) >= 0) patches.push_back(patch);
+  if (patches.empty()) return "";
+  double most = 0;
+  for (const std::size_t patch : patches) most = std::max(most, contact()->geometry().coverage(patch));
+  return part("too_little_covered", {{"cells", cells_of(patches)}, {"percent", fmt::format("{:.2g}", 100 * most)}});
+}
+
 void Newton::fail_to_converge(double instant, const IterationReport& line, const StaticState& previous,
                               std::size_t changing) const {
   const double excess = forces_over_asked(options_.criteria, line);

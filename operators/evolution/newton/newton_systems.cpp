@@ -116,7 +116,7 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
     if (free == 0)
       throw InstantFailure(message("SOLVER_14", {{"count", std::to_string(dependent)}, {"names", equilibrium_.names(null)}}),
                            {.depends_on_step = line.iteration > 0});
-    const std::string count = std::to_string(free), names = equilibrium_.names(null);
+    const std::string count = std::to_string(free), names = said({equilibrium_.names(null), too_little_covered(loose, state)});
     // the first matrix of an instant is that of the state before
     if (line.iteration == 0)
       throw InstantFailure(message("SOLVER_3", {{"count", count}, {"names", names}}), {.depends_on_step = false});

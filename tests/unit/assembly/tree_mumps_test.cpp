@@ -6,10 +6,10 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <new>
 #include <random>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "dense.hpp"
@@ -175,8 +175,9 @@ TEST(OrderingAhead, IsThatOfTheGraph) {
 std::vector<pid_t> own_processes() {
   std::vector<pid_t> found;
   for (const auto& folder : std::filesystem::directory_iterator("/proc")) {
-    std::ifstream status(folder.path() / "status");
-    const std::string text{std::istreambuf_iterator(status), {}};
+    std::ostringstream status;
+    status << std::ifstream(folder.path() / "status").rdbuf();  // nothing more, where the process ends meanwhile
+    const std::string text = status.str();
     if (text.starts_with("Name:\tlacon_mumps\n") && text.find("\nState:\tZ") == std::string::npos &&
         text.find("\nPPid:\t" + std::to_string(getpid()) + '\n') != std::string::npos)
       found.push_back(std::stoi(folder.path().filename()));

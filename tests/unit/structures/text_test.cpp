@@ -1,7 +1,12 @@
-// What counts as UTF-8, and what becomes of text that is none.
+// What counts as UTF-8, and what becomes of text that is none; files that cannot be read.
 #include "lacon/catalog/text.hpp"
 
 #include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/structures/formats/text_file.hpp"
 
 namespace {
 
@@ -24,6 +29,19 @@ TEST(Text, IsNoUtf8WhereACharacterIsCutOverlongASurrogateOrBeyondTheLast) {
                            "\xf0\x80\x80\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80", "\xff", "\xc3("}) {
     EXPECT_FALSE(lacon::is_utf8(text)) << text;
     EXPECT_TRUE(lacon::is_utf8(as_utf8(text))) << text;
+  }
+}
+
+TEST(TextFile, ThatCannotBeReadIsRefused) {
+  for (const std::filesystem::path& file :
+       {std::filesystem::temp_directory_path(), std::filesystem::path("/nowhere/mesh.mail")}) {
+    try {
+      lacon::read_text(file);
+      FAIL() << file;
+    } catch (const lacon::Error& error) {
+      EXPECT_EQ(error.message().id, "BASE_2");
+      EXPECT_NE(error.message().text.find(file.string()), std::string::npos) << error.message().text;
+    }
   }
 }
 
