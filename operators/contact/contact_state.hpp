@@ -231,7 +231,7 @@ class ContactState {
   HeldOverlap held_overlap() const;
   /// Whether an open patch may hold a body that is loose otherwise: its gap is within ContactTolerances::holding_gap.
   bool may_hold(std::size_t patch, const Patchwise& patches) const;
-  /// Whether it would but that its master covers too little of it.
+  /// Whether it would but that its master covers less than `taking_coverage` of it; no wall is beside it.
   bool lacks_cover(std::size_t patch, const Patchwise& patches) const;
   /// Whether gaps of patches that hold a body together may differ by so much.
   bool is_as_near(std::size_t patch, double difference) const { return difference <= tolerances_.as_near * size_[patch]; }

@@ -53,7 +53,7 @@ bool ContactState::may_hold(std::size_t patch, const Patchwise& patches) const {
 }
 
 bool ContactState::lacks_cover(std::size_t patch, const Patchwise& patches) const {
-  return is_covered(patch) && !takes_contact(patch) && is_near(patch, patches);
+  return is_covered(patch) && !takes_contact(patch) && !geometry_.is_beside_wall(patch) && is_near(patch, patches);
 }
 
 std::int32_t ContactState::node_at(std::size_t patch, const std::function<bool(std::int32_t node)>& is_loose) const {
