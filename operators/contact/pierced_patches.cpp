@@ -82,7 +82,7 @@ std::optional<CoarseContact> ContactState::coarse(std::int32_t zone, const Patch
       return patches.status[q] != Status::active && (!is_covered(q) || geometry_.gap(q) > depth);
     };
     const bool is_end = neighbours_[p].empty() || std::ranges::any_of(neighbours_[p], ends_contact);
-    if (!is_end || depth <= std::max(tolerances_.unpressed * pressed_in, gap_tolerance_)) continue;
+    if (!is_end || depth <= tolerances_.unpressed * pressed_in) continue;
     carried += force;
     if (force > largest) largest = force, found = {p, 0, depth / pressed_in};
   }

@@ -168,10 +168,11 @@ void ContactNotices::accept(const SolvedInstant& solved) {
       if (facets && std::abs(facets->gap) > gap_that_counts * facets->give)
         faceted_.emplace(zone, Faceted{solved.instant, *facets});
       coarse_.erase(zone);
-      if (const auto coarse = contact.coarse(zone, patches)) coarse_.emplace(zone, Coarse{solved.instant, *coarse});
       undecided_.erase(zone);
-      if (const auto share = contact.undecided(zone, patches); share && *share > share_of_round_off && *share < 1)
-        undecided_.emplace(zone, Undecided{solved.instant, *share});
+      if (const auto share = contact.undecided(zone, patches); share && *share < 1) {  // else all pressures are round-off
+        if (const auto coarse = contact.coarse(zone, patches)) coarse_.emplace(zone, Coarse{solved.instant, *coarse});
+        if (*share > share_of_round_off) undecided_.emplace(zone, Undecided{solved.instant, *share});
+      }
     }
     const auto note = [&](const std::optional<PiercedPatch>& now, PiercedZones& zones) {
       if (const auto before = zones.find(zone); now && (before == zones.end() || now->depth > before->second.worst.depth))
